@@ -4,9 +4,10 @@
 
 usage: targets.py                    each target: met or missed, from the rows of dev_kinds and dev_harsh
        targets.py --page FILE        renews the blocks of a page: <!-- targets -->, and tables of the rows,
-                                     <!-- kinds --> and <!-- harsh -->; --check instead of writing it
+                                     <!-- kinds -->, <!-- harsh --> and <!-- errors -->; --check instead
+                                     of writing it
 
-The rows are docs/history/development_set/data/kinds.csv and harsh.csv. Ratios are of medians over the seeds, but where a
+The rows are docs/history/development_set/data/kinds.csv, harsh.csv and errors_arena_lio.csv. Ratios are of medians over the seeds, but where a
 flight is named. A lost run counts as infinite.
 """
 import csv
@@ -125,7 +126,7 @@ def cell(rows):
     """Text of the drift of some runs: median final / live; at the LiDAR's clock (range of the final one)."""
     finals = [value(r, FINAL) for r in rows]
     median = lambda column: f"{statistics.median(value(r, column) for r in rows):.3g}"
-    clock = f"; {median(CLOCK)}" if all(r[CLOCK] for r in rows) else ""
+    clock = f"; {median(CLOCK)}" if all(r.get(CLOCK) for r in rows) else ""
     return f"{median(FINAL)} / {median(LIVE)}{clock} ({min(finals):.3g} to {max(finals):.3g})"
 
 
@@ -142,11 +143,21 @@ def drift(name):
     return "\n".join(lines)
 
 
-BLOCK = re.compile(r"(<!-- (targets|kinds|harsh) -->\n).*?(<!-- end -->)", re.DOTALL)
+def error_shares():
+    """The drift of `arena_lio` with each group of errors alone, as cell()."""
+    rows = read("errors_arena_lio")
+    lines = ["| variation | House | Cave |", "|---|---|---|"]
+    for name in dict.fromkeys(r["variation"] for r in rows):
+        cells = (cell([r for r in rows if (r["variation"], r["world"]) == (name, world)]) for world in ("test_house", "test_cave"))
+        lines.append(f"| {name or 'none'} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+BLOCK = re.compile(r"(<!-- (targets|kinds|harsh|errors) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def renewed_block(found):
-    content = table() if found[2] == "targets" else drift(found[2])
+    content = {"targets": table, "errors": error_shares}.get(found[2], lambda: drift(found[2]))()
     return f"{found[1]}\n{content}\n\n{found[3]}"
 
 
