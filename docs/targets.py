@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Judges our methods on the development set against the targets that were set for them.
+"""Judges our methods against the targets that were set for them.
 
-usage: targets.py                    each target: met or missed, from the rows of dev_kinds and dev_harsh
-       targets.py --page FILE        renews the blocks of a page: <!-- targets -->, and tables of the rows,
-                                     <!-- kinds -->, <!-- harsh --> and <!-- errors -->; --check instead
-                                     of writing it
+usage: targets.py [development|test] each target: met or missed
+       targets.py --page FILE        renews the blocks of a page: <!-- targets development -->, <!-- targets test -->,
+                                     and tables of the development set, <!-- kinds -->, <!-- harsh --> and
+                                     <!-- errors -->; --check instead of writing it
 
-The rows are docs/history/development_set/data/kinds.csv, harsh.csv and errors_arena_lio.csv. Ratios are of medians over the seeds, but where a
-flight is named. A lost run counts as infinite.
+The rows are kinds.csv, harsh.csv and errors_arena_lio.csv in docs/history/development_set/data, and test.csv, test_kinds.csv and
+test_harsh.csv in docs/results/data. Ratios are of medians over the seeds, but where a flight is named. A lost run counts as infinite.
 """
 import csv
 import math
@@ -17,18 +17,22 @@ import re
 import statistics
 import sys
 
-DATA = pathlib.Path(__file__).resolve().parent / "history" / "development_set" / "data"
+DOCS = pathlib.Path(__file__).resolve().parent
+DATA = DOCS / "history" / "development_set" / "data"
+SETS = {"development": [DATA / "kinds.csv", DATA / "harsh.csv"],
+        "test": [DOCS / "results" / "data" / (name + ".csv") for name in ("test", "test_kinds", "test_harsh")]}
 FINAL, LIVE, CLOCK = "rpe_1m_at_poses_translation_cm", "live_rpe_1m_at_poses_translation_cm", "rpe_1m_at_lidar_clock_cm"
+CPU = "cpu_load_percent"  # at ten scans a second also milliseconds a scan
 LOST_CM = 100.0
 WORLDS = {"test_house": "House", "test_cave": "Cave", "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall",
           "dev_office": "office"}
 SENSORS = {"livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128"}
 
 
-def read(*names):
+def read(*files):
     rows = []
-    for name in names:
-        with (DATA / (name + ".csv")).open(newline="") as file:
+    for path in files:
+        with path.open(newline="") as file:
             rows += csv.DictReader(file)
     return rows
 
@@ -110,14 +114,19 @@ def judged(ideal, harsh):
         grown = {(w, s): harsh.median("arena_lio", column, w, s + "_harsh") / ideal.median("arena_lio", FINAL, w, s)
                  for w, s in cells if w in ("test_house", "test_cave")}
         rows.append((f"all errors at most three times ideal, {what}", *limited(grown, 3.0)))
+    if CPU in ideal.rows[0]:
+        for method, limits in (("arena_lio", (6.0, 12.0)), ("arena_lo", (10.0, 20.0))):
+            for sensor, limit in zip(SENSORS, limits):
+                load = {c: ideal.median(method, CPU, *c) for c in cells if c[1] == sensor}
+                rows.append((f"CPU of `{method}` at most {limit:g} ms a scan, {SENSORS[sensor]}", *limited(load, limit)))
     return rows
 
 
-def table():
-    harsh = read("harsh")
-    ideal = Runs(read("kinds") + [r for r in harsh if not r["sensor"].endswith("_harsh")])
+def table(of="development"):
+    rows = read(*SETS[of])
+    ideal, harsh = (Runs([r for r in rows if r["sensor"].endswith("_harsh") == is_harsh]) for is_harsh in (False, True))
     lines = ["| target | | medians over seeds |", "|---|---|---|"]
-    for target, met, text in judged(ideal, Runs([r for r in harsh if r["sensor"].endswith("_harsh")])):
+    for target, met, text in judged(ideal, harsh):
         lines.append(f"| {target} | {'met' if met else '**missed**'} | {text} |")
     return "\n".join(lines)
 
@@ -131,7 +140,7 @@ def cell(rows):
 
 
 def drift(name):
-    rows = read(name)
+    rows = read(DATA / (name + ".csv"))
     lines = ["| world, sensor | `arena_lio` | `arena_lo` | FAST-LIO2 `tuned` | seeds |", "|---|---|---|---|---|"]
     for world in WORLDS:
         for sensor in sorted({r["sensor"] for r in rows if r["world"] == world}):
@@ -145,7 +154,7 @@ def drift(name):
 
 def error_shares():
     """The drift of `arena_lio` with each group of errors alone, as cell()."""
-    rows = read("errors_arena_lio")
+    rows = read(DATA / "errors_arena_lio.csv")
     lines = ["| variation | House | Cave |", "|---|---|---|"]
     for name in dict.fromkeys(r["variation"] for r in rows):
         cells = (cell([r for r in rows if (r["variation"], r["world"]) == (name, world)]) for world in ("test_house", "test_cave"))
@@ -153,17 +162,17 @@ def error_shares():
     return "\n".join(lines)
 
 
-BLOCK = re.compile(r"(<!-- (targets|kinds|harsh|errors) -->\n).*?(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (targets|kinds|harsh|errors)(?: (development|test))? -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def renewed_block(found):
-    content = {"targets": table, "errors": error_shares}.get(found[2], lambda: drift(found[2]))()
-    return f"{found[1]}\n{content}\n\n{found[3]}"
+    content = {"targets": lambda: table(found[3]), "errors": error_shares}.get(found[2], lambda: drift(found[2]))()
+    return f"{found[1]}\n{content}\n\n{found[4]}"
 
 
 def main():
-    if len(sys.argv) == 1:
-        print(table())
+    if len(sys.argv) == 1 or sys.argv[1] in SETS:
+        print(table(*sys.argv[1:]))
         return
     if len(sys.argv) != 3 or sys.argv[1] not in ("--page", "--check"):
         raise SystemExit(__doc__)
