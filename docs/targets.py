@@ -32,6 +32,8 @@ SENSORS = {"livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128"}
 def read(*files):
     rows = []
     for path in files:
+        if not path.exists():
+            raise SystemExit(f"{path}: no rows: fly the study and take over its results.csv first")
         with path.open(newline="") as file:
             rows += csv.DictReader(file)
     return rows
