@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Judges our methods against the targets that were set for them.
 
-usage: targets.py [development|test] each target: met or missed
-       targets.py --page FILE        renews the blocks of a page: <!-- targets development -->, <!-- targets test -->,
-                                     and tables of the development set, <!-- kinds -->, <!-- harsh --> and
-                                     <!-- errors -->; --check instead of writing it
+usage: targets.py [development|drone|test] each target: met or missed
+       targets.py --page FILE        renews the blocks of a page: <!-- targets development -->, <!-- targets drone -->,
+                                     <!-- targets test -->, and tables of the development set, <!-- kinds -->,
+                                     <!-- harsh -->, <!-- real_imu --> and <!-- errors -->; --check instead of writing it
 
-The rows are kinds.csv, harsh.csv and errors_arena_lio.csv in docs/history/development_set/data, and test.csv, test_kinds.csv and
-test_harsh.csv in docs/results/data. Ratios are of medians over the seeds, but where a flight is named. A lost run counts as infinite.
+The rows are kinds.csv, harsh.csv, real_imu.csv and errors_arena_lio.csv in docs/history/development_set/data, and test.csv,
+test_kinds.csv and test_harsh.csv in docs/results/data. Ratios are of medians over the seeds, but where a flight is named. A lost run counts as infinite.
 """
 import csv
+import itertools
 import math
 import pathlib
 import re
@@ -20,13 +21,16 @@ import sys
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "history" / "development_set" / "data"
 SETS = {"development": [DATA / "kinds.csv", DATA / "harsh.csv"],
+        "drone": [DATA / "real_imu.csv"],
         "test": [DOCS / "results" / "data" / (name + ".csv") for name in ("test", "test_kinds", "test_harsh")]}
 FINAL, LIVE, CLOCK = "rpe_1m_at_poses_translation_cm", "live_rpe_1m_at_poses_translation_cm", "rpe_1m_at_lidar_clock_cm"
 CPU = "cpu_load_percent"  # at ten scans a second also milliseconds a scan
 LOST_CM = 100.0
 WORLDS = {"test_house": "House", "test_cave": "Cave", "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall",
           "dev_office": "office"}
-SENSORS = {"livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128"}
+SENSORS = {"livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
+           "mid360_recorded_imu": "Mid-360", "os0_recorded_imu": "OS0-128"}
+DRONE = {"v101": "V101", "v203": "V203", "mh03": "MH03"}  # recorded flights; of others there is one in each world
 
 
 def read(*files):
@@ -47,28 +51,38 @@ def value(row, column):
     return math.inf if is_lost(row) or not row[column] else float(row[column])
 
 
+def cell_of(row):
+    """(world, recorded flight or nothing, sensor)"""
+    return row["world"], row["flight"] if row["flight"] in DRONE else "", row["sensor"]
+
+
+def method_of(row):
+    return row["algorithm"] + (":" + row["preset"] if row["preset"] else "")
+
+
 class Runs:
-    """Figures by world, sensor and method."""
+    """Figures by cell and method; `method:preset` for a published one."""
 
     def __init__(self, rows):
         self.rows = rows
 
-    def of(self, method, column, world=None, sensor=None):
-        """{(world, sensor, seed): figure}"""
-        return {(r["world"], r["sensor"], r["seed"]): value(r, column) for r in self.rows
-                if r["algorithm"] == method and world in (None, r["world"]) and sensor in (None, r["sensor"])}
+    def of(self, method, column, cell=None):
+        """{(*cell, seed): figure}"""
+        return {(*cell_of(r), r["seed"]): value(r, column) for r in self.rows
+                if method_of(r) == method and cell in (None, cell_of(r))}
 
-    def median(self, method, column, world, sensor):
-        return statistics.median(self.of(method, column, world, sensor).values())
+    def median(self, method, column, cell):
+        return statistics.median(self.of(method, column, cell).values())
 
     def cells(self):
-        """(world, sensor) with an ideal sensor, in the order of WORLDS."""
-        found = {(r["world"], r["sensor"]) for r in self.rows}
-        return [(w, s) for w in WORLDS for s in SENSORS if (w, s) in found]
+        """Those with a known sensor, in the order of WORLDS."""
+        found = {cell_of(r) for r in self.rows}
+        return [c for c in itertools.product(WORLDS, ("", *DRONE), SENSORS) if c in found]
 
 
 def named(cell):
-    return f"{WORLDS[cell[0]]}, {SENSORS[cell[1]]}"
+    world, flight, sensor = cell
+    return ", ".join(word for word in (DRONE.get(flight), WORLDS[world], SENSORS.get(sensor, sensor)) if word)
 
 
 def spread(ratios):
@@ -85,41 +99,44 @@ def limited(ratios, limit):
 
 def lost_runs(runs, method):
     figures = runs.of(method, FINAL)
-    lost = [f"{WORLDS[w]}, {SENSORS.get(s, s)}, {seed}" for (w, s, seed), v in figures.items() if math.isinf(v)]
+    lost = [f"{named(cell)}, {seed}" for (*cell, seed), v in figures.items() if math.isinf(v)]
     return len(lost), len(figures), "; ".join(lost)
 
 
 def judged(ideal, harsh):
     """[(target, met, text)]"""
     cells = ideal.cells()
-    ratio = lambda a, b, of=FINAL: {c: ideal.median(a, of, *c) / ideal.median(b, of, *c) for c in cells}
+    ratio = lambda a, b, of=FINAL: {c: ideal.median(a, of, c) / ideal.median(b, of, c) for c in cells}
     rows = []
     for method, share in (("arena_lio", 0.0), ("arena_lo", 0.05)):
         lost, flown, which = lost_runs(Runs(ideal.rows + harsh.rows), method)
         rows.append((f"`{method}` loses no flight" if share == 0.0 else f"`{method}` loses at most one flight in twenty",
                      lost <= share * flown, f"{lost} of {flown}" + (f" ({which})" if which else "")))
-    live = {c: ideal.median("arena_lio", LIVE, *c) / ideal.median("arena_lio", FINAL, *c) for c in cells}
+    live = {c: ideal.median("arena_lio", LIVE, c) / ideal.median("arena_lio", FINAL, c) for c in cells}
     rows.append(("`arena_lio` live at most 1.3 times final", *limited(live, 1.3)))
-    final = ratio("arena_lio", "fast_lio2")
-    rows.append(("final at most half of `tuned` FAST-LIO2", *limited(final, 0.5)))
-    two = {c: r for c, r in final.items() if c[0] in ("test_house", "test_cave")}
-    rows.append(("in House and Cave at most a third", *limited(two, 1 / 3)))
-    rows.append(("live ahead of it in each cell", *limited(ratio("arena_lio", "fast_lio2", LIVE), 1.0)))
-    flights = {}
-    for flight, own in ideal.of("arena_lio", FINAL).items():
-        cell = flight[:2]
-        if cell in cells:
-            flights[cell] = max(flights.get(cell, 0.0), own / ideal.of("fast_lio2", FINAL)[flight])
-    rows.append(("no flight more than a tenth worse than it; the worst flight of each cell", *limited(flights, 1.1)))
+    for rival in sorted({method_of(r) for r in ideal.rows if r["algorithm"] == "fast_lio2"}, reverse=True):
+        name = f"`{rival.partition(':')[2]}` FAST-LIO2"
+        final = ratio("arena_lio", rival)
+        rows.append((f"final at most half of {name}", *limited(final, 0.5)))
+        two = {c: r for c, r in final.items() if c[0] in ("test_house", "test_cave")}
+        rows.append(("in House and Cave at most a third", *limited(two, 1 / 3)))
+        rows.append(("live ahead of it in each cell", *limited(ratio("arena_lio", rival, LIVE), 1.0)))
+        flights = {}
+        of_rival = ideal.of(rival, FINAL)
+        for flight, own in ideal.of("arena_lio", FINAL).items():
+            cell = flight[:-1]
+            if cell in cells:
+                flights[cell] = max(flights.get(cell, 0.0), own / of_rival[flight])
+        rows.append(("no flight more than a tenth worse than it; the worst flight of each cell", *limited(flights, 1.1)))
     rows.append(("an IMU never makes it worse than `arena_lo`", *limited(ratio("arena_lio", "arena_lo"), 1.0)))
-    for column, what in ((FINAL, "at true time"), (CLOCK, "at the LiDAR's clock")):
-        grown = {(w, s): harsh.median("arena_lio", column, w, s + "_harsh") / ideal.median("arena_lio", FINAL, w, s)
-                 for w, s in cells if w in ("test_house", "test_cave")}
+    for column, what in ((FINAL, "at true time"), (CLOCK, "at the LiDAR's clock")) if harsh.rows else ():
+        grown = {(w, f, s): harsh.median("arena_lio", column, (w, f, s + "_harsh")) / ideal.median("arena_lio", FINAL, (w, f, s))
+                 for w, f, s in cells if w in ("test_house", "test_cave")}
         rows.append((f"all errors at most three times ideal, {what}", *limited(grown, 3.0)))
     if CPU in ideal.rows[0]:
         for method, limits in (("arena_lio", (6.0, 12.0)), ("arena_lo", (10.0, 20.0))):
             for sensor, limit in zip(SENSORS, limits):
-                load = {c: ideal.median(method, CPU, *c) for c in cells if c[1] == sensor}
+                load = {c: ideal.median(method, CPU, c) for c in cells if c[2] == sensor}
                 rows.append((f"CPU of `{method}` at most {limit:g} ms a scan, {SENSORS[sensor]}", *limited(load, limit)))
     return rows
 
@@ -143,14 +160,14 @@ def cell(rows):
 
 def drift(name):
     rows = read(DATA / (name + ".csv"))
-    lines = ["| world, sensor | `arena_lio` | `arena_lo` | FAST-LIO2 `tuned` | seeds |", "|---|---|---|---|---|"]
-    for world in WORLDS:
-        for sensor in sorted({r["sensor"] for r in rows if r["world"] == world}):
-            of = {m: [r for r in rows if (r["world"], r["sensor"], r["algorithm"]) == (world, sensor, m)]
-                  for m in ("arena_lio", "arena_lo", "fast_lio2")}
-            plain = sensor.removesuffix("_harsh")
-            title = named((world, plain)) if sensor == plain else "the same, harsh"
-            lines.append(f"| {title} | {' | '.join(map(cell, of.values()))} | {len(of['arena_lio'])} |")
+    methods = {"arena_lio": "`arena_lio`", "arena_lo": "`arena_lo`", "fast_lio2:tuned": "FAST-LIO2 `tuned`", "fast_lio2:indoor": "`indoor`"}
+    methods = {m: title for m, title in methods.items() if m in map(method_of, rows)}
+    lines = [f"| world, sensor | {' | '.join(methods.values())} | seeds |", "|---" * (len(methods) + 2) + "|"]
+    order = lambda c: (list(WORLDS).index(c[0]), list(DRONE).index(c[1]) if c[1] else -1, c[2])
+    for found in sorted({cell_of(r) for r in rows}, key=order):
+        of = [[r for r in rows if (cell_of(r), method_of(r)) == (found, m)] for m in methods]
+        title = "the same, harsh" if found[2].endswith("_harsh") else named(found)
+        lines.append(f"| {title} | {' | '.join(map(cell, of))} | {len(of[0])} |")
     return "\n".join(lines)
 
 
@@ -164,7 +181,7 @@ def error_shares():
     return "\n".join(lines)
 
 
-BLOCK = re.compile(r"(<!-- (targets|kinds|harsh|errors)(?: (development|test))? -->\n).*?(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (targets|kinds|harsh|real_imu|errors)(?: (development|drone|test))? -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def renewed_block(found):
