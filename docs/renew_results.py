@@ -21,10 +21,13 @@ follow, for a table of these alone, without ranges), between
 `<!-- runs NAME -->` and `<!-- end -->` the number of runs, and in a line
 `<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure (KIND `live`: the live drift
 beside the final one).
+`<!-- median NAME COLUMN METHOD WORLD SENSOR -->` is the median of a column of the runs that ratios compare.
 `<!-- ratio NAME KIND SENSOR METHOD SENSOR METHOD WORLD -->` is how many times the figure of the second cell
-is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all), and
+is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all; KIND `live-over-final`: the
+first's final drift, the second's live one), and
 `<!-- ratios METHOD METHOD STUDY ... -->` the table of such ratios of the drift in studies.
-docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
+docs/results/data/needs/NAME.json has tables of the report of a study that varies settings: `<!-- report NAME ID=HEAD ... -->`
+puts tables with the same rows side by side (HEAD with _ for blanks). docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
 """
@@ -43,11 +46,15 @@ import ratios
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
+NEEDS = DATA / "needs"  # studies that vary settings
 PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md",
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
          "livox_mid360_vibrating": "Mid-360", "ouster_os0_128_vibrating": "OS0-128",
+         "livox_mid360_harsh": "Mid-360", "ouster_os0_128_harsh": "OS0-128",
+         "mid360_recorded_imu": "Mid-360", "os0_recorded_imu": "OS0-128",
+         "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall", "dev_office": "office",
          "ouster_os0_128_same_imu": "OS0-128, IMU of the Mid-360",
          "livox_mid360_paper": "Mid-360", "ouster_os0_128_paper": "OS0-128",
          "edgar_mine": "Edgar mine", "lava_tube": "lava tube", "subt_cave": "SubT cave",
@@ -64,7 +71,7 @@ LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg":
 PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
 MIN_PAIRS = 16  # of a mark, within a world (lidarena/results/claims.hpp)
 KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
-BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|report|speed|costs|median|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -135,13 +142,28 @@ def figure(study, kind, variant, world, sensor, method):
     raise KeyError((world, sensor, method))
 
 
+def compared(study):
+    """The runs of a study that ratios compare: of published methods those with `tuned`, if it has such, else with `indoor`."""
+    runs = runs_of(study)
+    preset = "tuned" if any(run["preset"] == "tuned" for run in runs) else "indoor"
+    return [run for run in runs if run["preset"] in ("", preset)]
+
+
+def median_text(study, column, method, world, sensor):
+    values = [judged(run, column) for run in compared(study)
+              if (run["algorithm"], run["world"], run["sensor"]) == (method, world, sensor)]
+    return f"{statistics.median(values):.3g}"
+
+
 def pairs_of(study, kind, first, second, world):
     """(world, figure of the first, of the second) of the runs on the same flight and seed."""
-    def figures(cell):
-        return {(run["world"], run["flight"], run["mode"], run["seed"]): judged(run, COLUMNS[kind])
-                for run in runs_of(study) if (run["sensor"], run["algorithm"]) == cell
-                and run["preset"] in ("", "indoor") and world in ("", run["world"])}
-    a, b = figures(first), figures(second)
+    runs = compared(study)
+
+    def figures(cell, column):
+        return {(run["world"], run["flight"], run["mode"], run["seed"]): judged(run, column)
+                for run in runs if (run["sensor"], run["algorithm"]) == cell and world in ("", run["world"])}
+    kinds = ("drift", "live-drift") if kind == "live-over-final" else (kind, kind)
+    a, b = figures(first, COLUMNS[kinds[0]]), figures(second, COLUMNS[kinds[1]])
     return [(key[0], a[key], b[key]) for key in a
             if None not in (a[key], b.get(key))]
 
@@ -160,8 +182,7 @@ def ratios_table(second, first, *studies):
     """Markdown: in each study, world and sensor the drift of `second` over that of `first`."""
     lines = ["| study | world, sensor | pairs | final | live |", "|---|---|---:|---:|---:|"]
     for study in studies:
-        both = [{(run["world"], run["sensor"]) for run in runs_of(study)
-                 if run["algorithm"] == method and run["preset"] in ("", "indoor")}
+        both = [{(run["world"], run["sensor"]) for run in compared(study) if run["algorithm"] == method}
                 for method in (first, second)]
         for world, sensor in sorted(both[0] & both[1]):
             cells = (sensor, first), (sensor, second)
@@ -169,6 +190,29 @@ def ratios_table(second, first, *studies):
             texts = [ratio_text(study, kind, *cells, world) for kind in ("drift", "live-drift")]
             lines.append(f"| `{study}` | {NAMES[world]}, {NAMES[sensor]} | {pairs} | "
                          + " | ".join(texts) + " |")
+    return "\n".join(lines)
+
+
+def report_cell(cell):
+    """With its range, and how many of how many runs kept track, if one did not."""
+    spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
+    return f"{cell['text'] or '-'} ({spread})" if spread else cell["text"] or "-"
+
+
+def report_table(study, *columns):
+    """Markdown of tables of a report, side by side: a row for each variation."""
+    stored = json.loads((NEEDS / (study + ".json")).read_text())
+    head, rows = [""], {}
+    for name, _, title in (column.partition("=") for column in columns):
+        table_of_report = stored[name]
+        methods = table_of_report["head"][1:]
+        for i, method in enumerate(methods, 1):
+            label = title.replace("_", " ")
+            head.append(f"{label}, {method.partition(', ')[2]}" if len(methods) > 1 else label)
+            for row in table_of_report["rows"]:
+                rows.setdefault(row[0]["text"], {})[head[-1]] = report_cell(row[i])
+    lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
+    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
     return "\n".join(lines)
 
 
@@ -252,10 +296,14 @@ def renewed(page):
         what, words = found[2], words_of(found)
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), *words[2:])}\n\n{found[5]}"
+        if what == "report":
+            return f"{found[1]}\n\n{report_table(*words)}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
         if what == "costs":
             return f"{found[1]}\n\n{costs()}\n\n{found[5]}"
+        if what == "median":
+            return found[1] + median_text(*words) + found[5]
         if what == "ratios":
             return f"{found[1]}\n\n{ratios_table(*words)}\n\n{found[5]}"
         if what == "ratio":
@@ -427,6 +475,19 @@ def check():
     return faults
 
 
+def take_over_report(study, name):
+    """The tables of a report that pages show by `report`, and its runs. False: no page shows one."""
+    wanted = {column.partition("=")[0] for page in PAGES for found in BLOCK.finditer(page.read_text())
+              if found[2] == "report" and words_of(found)[0] == name for column in words_of(found)[1:]}
+    if not wanted:
+        return False
+    tables = {table_id: json.loads((study / "tables" / (table_id + ".json")).read_text()) for table_id in sorted(wanted)}
+    NEEDS.mkdir(exist_ok=True)
+    (NEEDS / (name + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
+    shutil.copyfile(study / "results.csv", NEEDS / (name + ".csv"))
+    return True
+
+
 def take_over(study, name):
     wanted = {(w[1], w[2]) for page in PAGES for found in BLOCK.finditer(page.read_text())
               for w in [words_of(found)] if w[0] == name and found[2] in ("table", "=")}
@@ -463,7 +524,7 @@ def main():
         take_over_speed(arguments.study)
     elif arguments.study and arguments.study.suffix == ".tsv":
         shutil.copyfile(arguments.study, DATA / "costs.tsv")
-    elif arguments.study:
+    elif arguments.study and not take_over_report(arguments.study, arguments.name or arguments.study.name):
         take_over(arguments.study, arguments.name or arguments.study.name)
     for page in PAGES:
         page.write_text(renewed(page.read_text()))
