@@ -26,8 +26,7 @@ beside the final one).
 is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all; KIND `live-over-final`: the
 first's final drift, the second's live one), and
 `<!-- ratios METHOD METHOD STUDY ... -->` the table of such ratios of the drift in studies.
-docs/results/data/needs/NAME.json has tables of the report of a study that varies settings: `<!-- report NAME ID=HEAD ... -->`
-puts tables with the same rows side by side (HEAD with _ for blanks). docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
+docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
 """
@@ -46,12 +45,10 @@ import ratios
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
-NEEDS = DATA / "needs"  # studies that vary settings
 PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md",
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
-         "livox_mid360_vibrating": "Mid-360", "ouster_os0_128_vibrating": "OS0-128",
          "livox_mid360_harsh": "Mid-360", "ouster_os0_128_harsh": "OS0-128",
          "mid360_recorded_imu": "Mid-360", "os0_recorded_imu": "OS0-128",
          "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall", "dev_office": "office",
@@ -71,7 +68,7 @@ LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg":
 PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
 MIN_PAIRS = 16  # of a mark, within a world (lidarena/results/claims.hpp)
 KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
-BLOCK = re.compile(r"(<!-- (table|runs|report|speed|costs|median|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|median|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -193,29 +190,6 @@ def ratios_table(second, first, *studies):
     return "\n".join(lines)
 
 
-def report_cell(cell):
-    """With its range, and how many of how many runs kept track, if one did not."""
-    spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
-    return f"{cell['text'] or '-'} ({spread})" if spread else cell["text"] or "-"
-
-
-def report_table(study, *columns):
-    """Markdown of tables of a report, side by side: a row for each variation."""
-    stored = json.loads((NEEDS / (study + ".json")).read_text())
-    head, rows = [""], {}
-    for name, _, title in (column.partition("=") for column in columns):
-        table_of_report = stored[name]
-        methods = table_of_report["head"][1:]
-        for i, method in enumerate(methods, 1):
-            label = title.replace("_", " ")
-            head.append(f"{label}, {method.partition(', ')[2]}" if len(methods) > 1 else label)
-            for row in table_of_report["rows"]:
-                rows.setdefault(row[0]["text"], {})[head[-1]] = report_cell(row[i])
-    lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
-    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
-    return "\n".join(lines)
-
-
 BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
 EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
            "range_noise": "+ range noise",
@@ -296,8 +270,6 @@ def renewed(page):
         what, words = found[2], words_of(found)
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), *words[2:])}\n\n{found[5]}"
-        if what == "report":
-            return f"{found[1]}\n\n{report_table(*words)}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
         if what == "costs":
@@ -475,19 +447,6 @@ def check():
     return faults
 
 
-def take_over_report(study, name):
-    """The tables of a report that pages show by `report`, and its runs. False: no page shows one."""
-    wanted = {column.partition("=")[0] for page in PAGES for found in BLOCK.finditer(page.read_text())
-              if found[2] == "report" and words_of(found)[0] == name for column in words_of(found)[1:]}
-    if not wanted:
-        return False
-    tables = {table_id: json.loads((study / "tables" / (table_id + ".json")).read_text()) for table_id in sorted(wanted)}
-    NEEDS.mkdir(exist_ok=True)
-    (NEEDS / (name + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
-    shutil.copyfile(study / "results.csv", NEEDS / (name + ".csv"))
-    return True
-
-
 def take_over(study, name):
     wanted = {(w[1], w[2]) for page in PAGES for found in BLOCK.finditer(page.read_text())
               for w in [words_of(found)] if w[0] == name and found[2] in ("table", "=")}
@@ -524,7 +483,7 @@ def main():
         take_over_speed(arguments.study)
     elif arguments.study and arguments.study.suffix == ".tsv":
         shutil.copyfile(arguments.study, DATA / "costs.tsv")
-    elif arguments.study and not take_over_report(arguments.study, arguments.name or arguments.study.name):
+    elif arguments.study:
         take_over(arguments.study, arguments.name or arguments.study.name)
     for page in PAGES:
         page.write_text(renewed(page.read_text()))
