@@ -79,10 +79,12 @@ def lost_runs():
 
 
 def ended():
-    found = rows("test_published", world="test_house", sensor=MID, algorithm="ct_icp")
-    scans = [int(re.match(r"scan (\d+)", row["reason"])[1]) for row in found]
+    found = rows("test_published", world="test_house", sensor=MID, algorithm="ct_icp", preset="published")
+    times, drifts = ([float(row[column]) for row in found if row[column]] for column in ("ended_at_s", DRIFT))
     shown = cell("settings.md", "<!-- table test_published drift,map published -->", "CT-ICP", 3).split("; ")[0]
-    return shown, scans, shown == f"ended at scan {statistics.median(scans):.0f} (0 of {len(found)})"
+    parts = re.fullmatch(r"ended at (.*) s \[(.*)\] \(0 of (\d+)\)", shown)
+    return shown, (times, drifts), parts[1] == f"{statistics.median(times):.1f}" and same(parts[2], statistics.median(drifts)) and \
+        int(parts[3]) == len(found) == sum(map(lost, found))
 
 
 def map_error():

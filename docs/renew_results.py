@@ -26,6 +26,7 @@ beside the final one).
 is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all; KIND `live-over-final`: the
 first's final drift, the second's live one), and
 `<!-- ratios METHOD METHOD STUDY ... -->` the table of such ratios of the drift in studies.
+`<!-- presets KIND STUDY ... -->` has the medians of each method and preset, over the seeds that all these studies have.
 docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
@@ -69,7 +70,7 @@ LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg":
 PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
 MIN_PAIRS = 16  # of a mark, within a world (lidarena/results/claims.hpp)
 KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
-BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|median|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|median|ratios|ratio|presets|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -191,6 +192,26 @@ def ratios_table(second, first, *studies):
     return "\n".join(lines)
 
 
+def presets_table(kind, *studies):
+    """Markdown: a row for each method and preset, a column for each world and sensor."""
+    seeds = set.intersection(*({run["seed"] for run in runs_of(study)} for study in studies))
+    runs = [run for study in studies for run in runs_of(study) if run["seed"] in seeds]
+    columns = sorted({(run["world"], run["sensor"]) for run in runs})
+    lines = [f"| {KINDS[kind].partition(',')[0]} | preset | " + " | ".join(f"{NAMES[w]}, {NAMES[s]}" for w, s in columns) + " |",
+             "|---|---|" + "---:|" * len(columns)]
+    for method in dict.fromkeys(run["algorithm"] for run in runs):
+        for preset in dict.fromkeys(run["preset"] for run in runs if run["algorithm"] == method):
+            row = []
+            for column in columns:
+                values = values_of([run for run in runs if (run["algorithm"], run["preset"], run["world"], run["sensor"])
+                                    == (method, preset, *column)], COLUMNS[kind])
+                kept = sum(map(math.isfinite, values))
+                row.append(number_text(statistics.median(values)) + (f" ({kept} of {len(values)})" if kept < len(values) else ""))
+            title = f"{NAMES[method]} | `{preset}`" if preset else f"`{method}` |"
+            lines.append(f"| {title} | " + " | ".join(row) + " |")
+    return "\n".join(lines)
+
+
 BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
 EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
            "range_noise": "+ range noise",
@@ -277,8 +298,9 @@ def renewed(page):
             return f"{found[1]}\n\n{costs()}\n\n{found[5]}"
         if what == "median":
             return found[1] + median_text(*words) + found[5]
-        if what == "ratios":
-            return f"{found[1]}\n\n{ratios_table(*words)}\n\n{found[5]}"
+        if what in ("ratios", "presets"):
+            made = {"ratios": ratios_table, "presets": presets_table}[what](*words)
+            return f"{found[1]}\n\n{made}\n\n{found[5]}"
         if what == "ratio":
             text = ratio_text(words[0], words[1], tuple(words[2:4]), tuple(words[4:6]), words[6])
             return found[1] + text + found[5]
