@@ -21,7 +21,8 @@ rosparam set use_sim_time true
 rosparam load "$parameters"
 "$@" &
 nodes=$!
-rosbag record -O "$output/odometry.bag" "$topic" __name:=lidarena_recorder &
+# The shell has jobs in the background ignore SIGINT, with which rosbag is to close its bag.
+env --default-signal=INT rosbag record -O "$output/odometry.bag" "$topic" __name:=lidarena_recorder &
 recorder=$!
 nodes="$nodes $recorder"
 sleep 3 # until all have found each other
