@@ -9,19 +9,20 @@ bag=$1 output=$2 topic=$3 parameters=$4
 shift 4
 port=$((20000 + $$ % 20000))
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1
-roscore -p "$port" >"$output/roscore.log" 2>&1 &
+# The shell has jobs in the background ignore SIGINT, which ends these programs.
+env --default-signal=INT roscore -p "$port" >"$output/roscore.log" 2>&1 &
 core=$!
 nodes=
-trap 'kill -INT $nodes $core 2>/dev/null || true' EXIT
+# The master is no child of roscore's process group: roscore has to end it.
+trap 'kill -INT $nodes $core 2>/dev/null || true; wait $core || true' EXIT
 for _ in $(seq 150); do
   rosparam list >/dev/null 2>&1 && break
   sleep 0.2
 done
 rosparam set use_sim_time true
 rosparam load "$parameters"
-"$@" &
+env --default-signal=INT "$@" &
 nodes=$!
-# The shell has jobs in the background ignore SIGINT, with which rosbag is to close its bag.
 env --default-signal=INT rosbag record -O "$output/odometry.bag" "$topic" __name:=lidarena_recorder &
 recorder=$!
 nodes="$nodes $recorder"
