@@ -459,6 +459,8 @@ def check():
     faults = [fault for file in sorted(DATA.glob("*.csv")) for fault in faults_of(file.stem)]
     for file in PAGES:
         page = file.read_text()
+        if found := re.search(r"\S\n *<!-- (=|ratio|median|runs) [^\n]*", page):
+            faults.append(f"{file.name}: a figure that starts a line ends the paragraph before it: {found[0].strip()}")
         if renewed(page) != page:
             faults.append(f"{file.name}: differs from docs/results/data, run docs/renew_results.py")
         if paper_protocol.BLOCK.search(page) and paper_protocol.renewed(page) != page:
