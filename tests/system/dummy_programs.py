@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import signal
 import struct
 import sys
@@ -138,6 +139,30 @@ def evalio():
     folder = given.o / given.d
     folder.mkdir(parents=True)
     folder.joinpath(f"{given.p}.csv").write_text("\n".join(rows) + "\n")
+
+
+def run_odometry():
+    """CT-ICP's command line: frames of KITTI-CARLA in, the first pose and the scans' last ones out, as PLY."""
+    assert sys.argv[1] == "-c", sys.argv
+    settings = dict(re.findall(r"^ *(?:- )?(\w+): *([^#\n]*?) *(?:#.*)?$", pathlib.Path(sys.argv[2]).read_text(), re.MULTILINE))
+    assert (settings["sequence_name"], settings["save_mid_frame"], settings["voxel_size"]) == ("Town01", "0", "0.3")
+    frames = pathlib.Path(settings["root_path"], "Town01/frames")
+    scans = list(poses("LIDAR", LAST))
+    assert int(settings["max_num_frames"]) == len(scans), settings
+    for scan, (stamp, _, _) in enumerate(scans):
+        header, _, points = (frames / f"frame_{scan:04}.ply").read_bytes().partition(b"end_header\n")
+        times = [t for x, y, z, t in struct.iter_unpack("<fffd", points)]
+        assert f"element vertex {len(times)}\n".encode() in header and len(times) > 1000, header
+        assert abs(min(times) - stamp) < 1e-3 and abs(max(times) - stamp - LAST) < 1e-3, (min(times), max(times), stamp)
+    first, = [(START, p, q) for stamp, p, q in poses("LIDAR", 0) if stamp == START]
+    rows = [first] + [(stamp + LAST, p, q) for stamp, p, q in scans]
+    names = "qx qy qz qw x y z ref_t dest_t".split()
+    header = "".join(f"property double {name}\n" for name in names) + "property int ref_fid\nproperty int dest_fid\n"
+    out = pathlib.Path(settings["output_dir"])
+    out.mkdir()
+    (out / "KITTI_CARLA_Town01.PLY").write_bytes(
+        f"ply\nformat binary_little_endian 1.0\nelement pose {len(rows)}\n{header}end_header\n".encode()
+        + b"".join(struct.pack("<9d2i", *q, *p, 0, t, 0, i) for i, (t, p, q) in enumerate(rows)))
 
 
 def note(what):

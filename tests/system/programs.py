@@ -15,7 +15,8 @@ import tempfile
 PROGRAM, CONFIGS = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 DUMMY = pathlib.Path(__file__).resolve().with_name("dummy_programs.py")
 SCORED = {"kiss_icp_pip": 0, "genz_icp_pip": 0, "rko_lio": 1000, "evalio_ct_icp": 1000,
-          "evalio_genz_icp": 1000, "evalio_dlio": 1000, "evalio_lio_sam": 1000, "glim_ros2": 1000}
+          "evalio_genz_icp": 1000, "evalio_dlio": 1000, "evalio_lio_sam": 1000, "glim_ros2": 1000,
+          "ct_icp_program": 0}
 ROS1 = {"fast_lio2_ros1": 1000, "lio_sam_ros1": 1000}
 NODES = {"kiss_icp_ros2": "launch kiss_icp odometry.launch.py topic:=/livox_mid360/points visualize:=false",
          "genz_icp_ros2": "launch genz_icp odometry.launch.py topic:=/livox_mid360/points visualize:=false",
@@ -87,14 +88,15 @@ def main(folder):
     check_parameters(folder)
     (folder / "bin").mkdir()
     for name in ("kiss_icp_pipeline genz_icp_pipeline rko_lio evalio roscore rosparam rosrun roslaunch rospack "
-                 "rosbag ros2").split():
+                 "rosbag ros2 run_odometry").split():
         (folder / "bin" / name).symlink_to(DUMMY)
     (folder / "bin/lidarena").symlink_to(PROGRAM)
     (folder / "bin/python3").symlink_to(sys.executable)
     (folder / "share/config").mkdir(parents=True)
     (folder / "share/config/config_odometry_cpu.json").write_text("{}")
+    (folder / "ct_icp.yaml").write_text("unit: s\nodometry_options:\n\n  # cells\n  voxel_size: 0.3 # m\n\nmore: 1\n")
     with_dummies = dict(os.environ, PATH=f"{folder}/bin:{os.environ['PATH']}", TRUTH=f"{folder}/data/truth.tum",
-                          NOTES=f"{folder}/notes", SHARE=f"{folder}/share")
+                          NOTES=f"{folder}/notes", SHARE=f"{folder}/share", CT_ICP_PROFILE=f"{folder}/ct_icp.yaml")
     without = dict(os.environ, PATH="/usr/bin:/bin")
 
     def call(*words, env=with_dummies, code=0):
