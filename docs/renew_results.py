@@ -68,7 +68,7 @@ COLUMNS = {"drift": "rpe_1m_at_poses_translation_cm",
            "outliers-vertices": "own_map_outliers_vertices_percent", "cpu": "cpu_load_percent"}
 LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg": 20.0}
 PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
-MIN_PAIRS = 16  # of a mark, within a world (lidarena/results/claims.hpp)
+MIN_SEEDS = 16  # of a mark, within a world; two flights of a seed share its world
 KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
 BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|median|ratios|ratio|presets|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
@@ -406,7 +406,7 @@ def judge(study):
             cell.pop("live", None)
             if live := live_text(kind, some):
                 cell["live"] = live
-            if len(values) < MIN_PAIRS:
+            if len({run["seed"] for run in some}) < MIN_SEEDS:
                 cell.pop("bold", None)
                 cell.pop("underlined", None)
     (DATA / (study + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
@@ -437,7 +437,7 @@ def is_cell(cell, kind, runs):
     marked = cell.get("bold") or cell.get("underlined")
     return (same and is_spread(cell["spread"], values) and
             cell.get("live", "") == live_text(kind, runs) and
-            not (marked and len(values) < MIN_PAIRS))
+            not (marked and len({run["seed"] for run in runs}) < MIN_SEEDS))
 
 
 def faults_of(study):
