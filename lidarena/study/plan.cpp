@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "lidarena/base/config.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/md5.hpp"
 #include "lidarena/dataset/text_file.hpp"
@@ -16,12 +17,33 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPlan = "plan.json";
 
-/// Digests of files, each read once.
+/// The values in `node` that are the name of a file, relative to `folder`.
+void collect_files(const ConfigNode& node, const fs::path& folder, std::vector<fs::path>& files) {
+  if (node.is_map()) {
+    for (const std::string& key : node.keys()) collect_files(*node.find(key), folder, files);
+  } else if (node.is_list()) {
+    for (const ConfigNode& item : node.items()) collect_files(item, folder, files);
+  } else if (!node.is_null()) {
+    std::error_code no_such_file;
+    const fs::path file = folder / node.text();
+    if (fs::is_regular_file(file, no_such_file)) files.push_back(file);
+  }
+}
+
+/// Digests of files, each read once. That of a YAML file is also that of the files that it names: a
+/// mesh, a recorded flight and its IMU, a pattern.
 class Digests {
  public:
   const std::string& of(const fs::path& file) {
     std::string& digest = known_[file];
-    if (digest.empty()) digest = dataset::md5_of(dataset::read_bytes(file));
+    if (!digest.empty()) return digest;
+    digest = dataset::md5_of(dataset::read_bytes(file));
+    std::vector<fs::path> named;
+    if (file.extension() == ".yaml")
+      collect_files(ConfigNode::load(file), file.parent_path(), named);
+    std::string all = digest;
+    for (const fs::path& other : named) all += dataset::md5_of(dataset::read_bytes(other));
+    if (!named.empty()) digest = dataset::md5_of(all);
     return digest;
   }
 

@@ -154,8 +154,10 @@ Task Tasks::flight(const PlanUnit& unit, const stages::ConfigFolder& configs) co
 
 Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::path& folder) const {
   Step step{"run", {}, folder / "manifest.json", {}};
-  step.key = {
-      {"flight", unit.flight}, {"code", code_.of_method(cell.algorithm)}, {"cell", to_json(cell)}};
+  Json named = to_json(cell);  // the content of its files is in the key of the flight
+  for (const char* file : {"world", "flight", "sensor"})
+    named[file] = fs::path(named[file].get<std::string>()).filename().string();
+  step.key = {{"flight", unit.flight}, {"code", code_.of_method(cell.algorithm)}, {"cell", named}};
   const stages::ExternalProgram* external = find_external(plan_.spec, cell.algorithm);
   if (external != nullptr) step.key["external"] = to_json(*external);
   // Without its maps, a run cannot be scored again.

@@ -14,6 +14,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/stages/scene_settings.hpp"
+#include "lidarena/study/tasks.hpp"
 #include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -259,6 +260,42 @@ TEST(Plan, AnotherBaseOfASensorMakesAnotherFlight) {
   EXPECT_EQ(flight_key(plan, unit, configs()), unit.flight);
   folder.write("base.yaml", "base: livox_mid360\nmax_range_m: 30\n");
   EXPECT_NE(flight_key(plan, unit, configs()), unit.flight);
+}
+
+/// A study whose world and flight are files of `folder` that name others.
+StudySpec spec_in(const TemporaryFolder& folder) {
+  folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("path.tum", "0 0 0 1 0 0 0 1\n1 0 0 1 0 0 0 1\n2 0 0 1 0 0 0 1\n");
+  StudySpec spec;
+  spec.scenes = {{.world = folder.write("place.yaml", "kind: mesh\nfile: mesh.obj\n").string(),
+                  .flight = folder.write("path.yaml", "kind: replay\nreplay: path.tum\n").string(),
+                  .seconds = 1.0}};
+  spec.sensors = {folder.write("near.yaml", "base: livox_mid360\nmax_range_m: 40\n").string()};
+  spec.algorithms = {"kiss_icp"};
+  return spec;
+}
+
+TEST(Plan, AnotherMeshOrRecordedPathMakesAnotherFlight) {
+  const TemporaryFolder folder;
+  const StudyPlan plan =
+      make_plan(spec_in(folder), configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)));
+  const PlanUnit& unit = plan.units.front();
+  EXPECT_EQ(flight_key(plan, unit, configs()), unit.flight);
+  folder.write("mesh.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Json other_mesh = flight_key(plan, unit, configs());
+  EXPECT_NE(other_mesh, unit.flight);
+  folder.write("path.tum", "0 0 0 1 0 0 0 1\n1 0 0 2 0 0 0 1\n2 0 0 1 0 0 0 1\n");
+  EXPECT_NE(flight_key(plan, unit, configs()), other_mesh);
+}
+
+TEST(Plan, ARunIsTheSameInAnyFolder) {
+  const TemporaryFolder here, there;
+  const auto key_of_run = [](const TemporaryFolder& folder) {
+    const StudyPlan plan =
+        make_plan(spec_in(folder), configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)));
+    return Tasks(plan, "out").run(plan.units.front(), 0).key();
+  };
+  EXPECT_EQ(key_of_run(here), key_of_run(there));
 }
 
 TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
