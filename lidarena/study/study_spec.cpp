@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/flight/make_flight.hpp"
+#include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/lidar.hpp"
 #include "lidarena/stages/scene_settings.hpp"
@@ -113,6 +118,24 @@ void check_names_differ(const std::vector<PlannedRun>& cells) {
 /// The settings of the cell's flight.
 stages::SceneSettings settings_of(const PlannedRun& cell, const stages::ConfigFolder& configs) {
   return stages::scene_settings(cell.set, {configs.resolve("sensors", cell.sensor)});
+}
+
+/// Throws InputError if settings of a flight exclude each other, such as fast sweeps of the heading
+/// and a low yaw rate: each is tried on a straight line.
+void check_flights(const std::vector<PlannedRun>& cells, const stages::ConfigFolder& configs) {
+  const std::array line{Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(10.0, 0.0, 0.0)};
+  std::set<std::pair<std::string, std::vector<std::string>>> tried;
+  for (const PlannedRun& cell : cells) {
+    if (!cell.recording.empty()) continue;
+    const fs::path file = configs.resolve("flights", cell.flight);
+    const std::vector<std::string> set = settings_of(cell, configs).flight;
+    if (file.extension() != ".yaml" || !tried.emplace(cell.flight, set).second) continue;
+    flight::FlightConfig config = flight::load_flight(file, set);
+    if (config.kind == flight::FlightKind::kReplay) continue;
+    config.duration_s = 0.0;  // once along the line
+    const std::string with = set.empty() ? "" : fmt::format(" with {}", fmt::join(set, ", "));
+    const flight::SplineFlight on_line(line, config, file.string() + with);
+  }
 }
 
 /// Length of the cell's flight, s; a guess if the flight's file gives no duration.
@@ -253,6 +276,7 @@ std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::Confi
     }
   }
   check_names_differ(cells);
+  check_flights(cells, configs);
   return cells;
 }
 

@@ -146,6 +146,16 @@ TEST(Variations, SettingsOfASetAreCheckedTogether) {
               HasSubstr("min_range_m is not below max_range_m"));
 }
 
+TEST(Variations, AFlightThatNoPlaceAllowsIsRefused) {
+  const std::string racing = "scenes: [{world: house, flight: house_aggressive, seconds: 1}]\n";
+  EXPECT_THAT(error_of(racing + "vary: {flight.limits.max_yaw_rate: [4, 0.6]}"),
+              AllOf(HasSubstr("house_aggressive.yaml with limits.max_yaw_rate=0.6"),
+                    HasSubstr("sweep needs a yaw rate of 2.78 rad/s")));
+  EXPECT_EQ(error_of(racing + "sets: [{name: calm, set: {flight.limits.max_yaw_rate: 0.6, "
+                              "flight.heading.amplitude: 0.06}}]"),
+            "no error");
+}
+
 TEST(Variations, WhatTheSeedDrawsIsNeverTakenForTheBase) {
   StudySpec spec = spec_of("vary: {world.house.detail: [2]}\nnew_scenes: true");
   spec.scenes = {{"test_house", "house_aggressive", 1.0}};
