@@ -157,6 +157,8 @@ Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::pat
   Json named = to_json(cell);  // the content of its files is in the key of the flight
   for (const char* file : {"world", "flight", "sensor"})
     named[file] = fs::path(named[file].get<std::string>()).filename().string();
+  // what the study calls its settings, which are in `set` and `settings`
+  for (const char* title : {"variation", "varied", "differs"}) named.erase(title);
   step.key = {{"flight", unit.flight}, {"code", code_.of_method(cell.algorithm)}, {"cell", named}};
   const stages::ExternalProgram* external = find_external(plan_.spec, cell.algorithm);
   if (external != nullptr) step.key["external"] = to_json(*external);

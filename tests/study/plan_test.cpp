@@ -298,6 +298,21 @@ TEST(Plan, ARunIsTheSameInAnyFolder) {
   EXPECT_EQ(key_of_run(here), key_of_run(there));
 }
 
+TEST(Plan, ARunIsTheSameInAStudyThatVariesMore) {
+  const TemporaryFolder folder;
+  const auto key_of_first_run = [&](const Json& vary) {
+    StudySpec spec = spec_in(folder);
+    spec.vary = vary;
+    const StudyPlan plan =
+        make_plan(spec, configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)));
+    const auto unit =
+        std::ranges::find_if(plan.units, [](const PlanUnit& u) { return u.cells.front() == 0; });
+    return Tasks(plan, "out").run(*unit, 0).key();
+  };
+  EXPECT_EQ(key_of_first_run({{"sensor.rate_hz", {20}}}),
+            key_of_first_run({{"sensor.rate_hz", {5, 20}}, {"imu.rate_hz", {100}}}));
+}
+
 TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
   StudySpec spec = small_spec();
   const std::vector<PlannedRun> cells = planned_cells(spec, configs());
