@@ -26,6 +26,8 @@ beside the final one).
 is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all; KIND `live-over-final`: the
 first's final drift, the second's live one), and
 `<!-- ratios METHOD METHOD STUDY ... -->` the table of such ratios of the drift in studies.
+docs/results/data/needs/NAME.json has tables of the report of a study that varies settings: `<!-- report NAME ID=HEAD ... -->`
+puts tables with the same rows side by side (HEAD with _ for blanks). FINAL_ID/LIVE_ID=HEAD has both in each cell.
 `<!-- presets KIND STUDY ... -->` has the medians of each method and preset, over the seeds that all these studies have.
 docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
@@ -47,6 +49,7 @@ import targets
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
+NEEDS = DATA / "needs"  # studies that vary settings
 PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md",
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
@@ -70,7 +73,7 @@ LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg":
 PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
 MIN_SEEDS = 16  # of a mark, within a world; two flights of a seed share its world
 KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
-BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|median|ratios|ratio|presets|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|report|speed|costs|median|ratios|ratio|presets|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -78,8 +81,9 @@ def tables_of(study):
 
 
 def runs_of(study):
-    with (DATA / (study + ".csv")).open(newline="") as file:
-        return list(csv.DictReader(file))
+    file = DATA / (study + ".csv")
+    with (file if file.exists() else NEEDS / (study + ".csv")).open(newline="") as rows:
+        return list(csv.DictReader(rows))
 
 
 def cells_of(table):
@@ -212,6 +216,36 @@ def presets_table(kind, *studies):
     return "\n".join(lines)
 
 
+def report_cell(cell, live=None):
+    """With its range, how many of how many runs kept track, if one did not, and the live figure."""
+    spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
+    text = cell["text"] or "-"
+    if cell.get("bold"):
+        text = f"**{text}**"
+    if live and live["text"] and text != "lost":
+        text += f" / {live['text']} live"
+    return f"{text} ({spread})" if spread else text
+
+
+def report_table(study, *columns):
+    """Markdown of tables of a report, side by side: a row for each variation."""
+    stored = json.loads((NEEDS / (study + ".json")).read_text())
+    head, rows = [""], {}
+    for names, _, title in (column.partition("=") for column in columns):
+        name, _, live = names.partition("/")
+        table_of_report = stored[name]
+        live_cells = {row[0]["text"]: row for row in stored[live]["rows"]} if live else {}
+        methods = table_of_report["head"][1:]
+        for i, method in enumerate(methods, 1):
+            label = title.replace("_", " ")
+            head.append(f"{label}, {method.partition(', ')[2]}" if len(methods) > 1 else label)
+            for row in table_of_report["rows"]:
+                rows.setdefault(row[0]["text"], {})[head[-1]] = report_cell(row[i], live_cells.get(row[0]["text"], {i: None})[i])
+    lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
+    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
+    return "\n".join(lines)
+
+
 BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
 EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
            "range_noise": "+ range noise",
@@ -292,6 +326,8 @@ def renewed(page):
         what, words = found[2], words_of(found)
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), *words[2:])}\n\n{found[5]}"
+        if what == "report":
+            return f"{found[1]}\n\n{report_table(*words)}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
         if what == "costs":
@@ -455,8 +491,29 @@ def faults_of(study):
         yield f"{study}: no table of it was compared with its runs"
 
 
+def faults_of_sweeps(study):
+    """Medians of the stored tables of a study that varies settings that are not those of its runs."""
+    runs = runs_of(study)
+    for name, stored in json.loads((NEEDS / (study + ".json")).read_text()).items():
+        if not (found := re.fullmatch(r"sweep-(\w+)-(\w+)", name)):
+            continue
+        column, = (c for c in runs[0] if re.fullmatch(found[1] + "_(cm|percent|deg|MB)", c))
+        for label, *cells in stored["rows"]:
+            for title, cell in zip(stored["head"][1:], cells):
+                sensor, method, preset = re.fullmatch(r"(\w+), (\w+)(?: \((\w+)\))?", title).groups("")
+                values = [judged(run, column) for run in runs
+                          if (run["world"], run["sensor"], run["algorithm"], run["preset"], run["variation"] or "base")
+                          == (found[2], sensor, method, preset, label["text"])]
+                values = [value for value in values if value is not None]
+                median = statistics.median(values) if values else None
+                told = math.inf if cell["text"] == "lost" or cell["text"].startswith("ended") else cell.get("value")
+                if told != median and not (told and median and math.isclose(told, median, rel_tol=1e-6)):
+                    yield f"{study}: {name}, {label['text']}, {title}: {cell['text']}, but the runs give {median}"
+
+
 def check():
     faults = [fault for file in sorted(DATA.glob("*.csv")) for fault in faults_of(file.stem)]
+    faults += [fault for file in sorted(NEEDS.glob("*.json")) for fault in faults_of_sweeps(file.stem)]
     for file in PAGES:
         page = file.read_text()
         if found := re.search(r"\S\n *<!-- (=|ratio|median|runs) [^\n]*", page):
@@ -472,6 +529,20 @@ def check():
             by_hand = re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])", text)
             faults += [f"{file.name}: {number} was typed by hand" for number in by_hand]
     return faults
+
+
+def take_over_report(study, name):
+    """The tables of a report that pages show by `report`, and its runs. False: no page shows one."""
+    wanted = {table for page in PAGES for found in BLOCK.finditer(page.read_text())
+              if found[2] == "report" and words_of(found)[0] == name
+              for column in words_of(found)[1:] for table in column.partition("=")[0].split("/")}
+    if not wanted:
+        return False
+    tables = {table_id: json.loads((study / "tables" / (table_id + ".json")).read_text()) for table_id in sorted(wanted)}
+    NEEDS.mkdir(exist_ok=True)
+    (NEEDS / (name + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
+    shutil.copyfile(study / "results.csv", NEEDS / (name + ".csv"))
+    return True
 
 
 def take_over(study, name):
@@ -510,7 +581,7 @@ def main():
         take_over_speed(arguments.study)
     elif arguments.study and arguments.study.suffix == ".tsv":
         shutil.copyfile(arguments.study, DATA / "costs.tsv")
-    elif arguments.study:
+    elif arguments.study and not take_over_report(arguments.study, arguments.name or arguments.study.name):
         take_over(arguments.study, arguments.name or arguments.study.name)
     for page in PAGES:
         page.write_text(renewed(page.read_text()))
