@@ -238,7 +238,9 @@ def report_table(study, *columns):
         methods = table_of_report["head"][1:]
         for i, method in enumerate(methods, 1):
             label = title.replace("_", " ")
-            head.append(f"{label}, {method.partition(', ')[2]}" if len(methods) > 1 else label)
+            name_of_method = method.partition(", ")[2].removesuffix(" (tuned)")
+            named = NAMES.get(name_of_method, f"`{name_of_method}`")
+            head.append(f"{label}, {named}" if len(methods) > 1 else label)
             for row in table_of_report["rows"]:
                 rows.setdefault(row[0]["text"], {})[head[-1]] = report_cell(row[i], live_cells.get(row[0]["text"], {i: None})[i])
     lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
