@@ -45,6 +45,7 @@ import sys
 
 import paper_protocol
 import ratios
+import report_tables
 import targets
 
 DOCS = pathlib.Path(__file__).resolve().parent
@@ -216,38 +217,6 @@ def presets_table(kind, *studies):
     return "\n".join(lines)
 
 
-def report_cell(cell, live=None):
-    """With its range, how many of how many runs kept track, if one did not, and the live figure."""
-    spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
-    text = cell["text"] or "-"
-    if cell.get("bold"):
-        text = f"**{text}**"
-    if live and live["text"] and text != "lost":
-        text += f" / {live['text']} live"
-    return f"{text} ({spread})" if spread else text
-
-
-def report_table(study, *columns):
-    """Markdown of tables of a report, side by side: a row for each variation."""
-    stored = json.loads((NEEDS / (study + ".json")).read_text())
-    head, rows = [""], {}
-    for names, _, title in (column.partition("=") for column in columns):
-        name, _, live = names.partition("/")
-        table_of_report = stored[name]
-        live_cells = {row[0]["text"]: row for row in stored[live]["rows"]} if live else {}
-        methods = table_of_report["head"][1:]
-        for i, method in enumerate(methods, 1):
-            label = title.replace("_", " ")
-            name_of_method = method.partition(", ")[2].removesuffix(" (tuned)")
-            named = NAMES.get(name_of_method, f"`{name_of_method}`")
-            head.append(f"{label}, {named}" if len(methods) > 1 else label)
-            for row in table_of_report["rows"]:
-                rows.setdefault(row[0]["text"], {})[head[-1]] = report_cell(row[i], live_cells.get(row[0]["text"], {i: None})[i])
-    lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
-    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
-    return "\n".join(lines)
-
-
 BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
 EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
            "range_noise": "+ range noise",
@@ -329,7 +298,8 @@ def renewed(page):
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), *words[2:])}\n\n{found[5]}"
         if what == "report":
-            return f"{found[1]}\n\n{report_table(*words)}\n\n{found[5]}"
+            made = report_tables.side_by_side(stored_report(words[0]), words[1:], NAMES)
+            return f"{found[1]}\n\n{made}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
         if what == "costs":
@@ -493,29 +463,14 @@ def faults_of(study):
         yield f"{study}: no table of it was compared with its runs"
 
 
-def faults_of_sweeps(study):
-    """Medians of the stored tables of a study that varies settings that are not those of its runs."""
-    runs = runs_of(study)
-    for name, stored in json.loads((NEEDS / (study + ".json")).read_text()).items():
-        if not (found := re.fullmatch(r"sweep-(\w+)-(\w+)", name)):
-            continue
-        column, = (c for c in runs[0] if re.fullmatch(found[1] + "_(cm|percent|deg|MB)", c))
-        for label, *cells in stored["rows"]:
-            for title, cell in zip(stored["head"][1:], cells):
-                sensor, method, preset = re.fullmatch(r"(\w+), (\w+)(?: \((\w+)\))?", title).groups("")
-                values = [judged(run, column) for run in runs
-                          if (run["world"], run["sensor"], run["algorithm"], run["preset"], run["variation"] or "base")
-                          == (found[2], sensor, method, preset, label["text"])]
-                values = [value for value in values if value is not None]
-                median = statistics.median(values) if values else None
-                told = math.inf if cell["text"] == "lost" or cell["text"].startswith("ended") else cell.get("value")
-                if told != median and not (told and median and math.isclose(told, median, rel_tol=1e-6)):
-                    yield f"{study}: {name}, {label['text']}, {title}: {cell['text']}, but the runs give {median}"
+def stored_report(study):
+    return json.loads((NEEDS / (study + ".json")).read_text())
 
 
 def check():
     faults = [fault for file in sorted(DATA.glob("*.csv")) for fault in faults_of(file.stem)]
-    faults += [fault for file in sorted(NEEDS.glob("*.json")) for fault in faults_of_sweeps(file.stem)]
+    faults += [f"{file.stem}: {fault}" for file in sorted(NEEDS.glob("*.json"))
+               for fault in report_tables.wrong_medians(stored_report(file.stem), runs_of(file.stem), judged)]
     for file in PAGES:
         page = file.read_text()
         if found := re.search(r"\S\n *<!-- (=|ratio|median|runs) [^\n]*", page):
@@ -535,12 +490,12 @@ def check():
 
 def take_over_report(study, name):
     """The tables of a report that pages show by `report`, and its runs. False: no page shows one."""
-    wanted = {table for page in PAGES for found in BLOCK.finditer(page.read_text())
-              if found[2] == "report" and words_of(found)[0] == name
-              for column in words_of(found)[1:] for table in column.partition("=")[0].split("/")}
-    if not wanted:
+    columns = [column for page in PAGES for found in BLOCK.finditer(page.read_text())
+               if found[2] == "report" and words_of(found)[0] == name for column in words_of(found)[1:]]
+    if not columns:
         return False
-    tables = {table_id: json.loads((study / "tables" / (table_id + ".json")).read_text()) for table_id in sorted(wanted)}
+    tables = {table_id: json.loads((study / "tables" / (table_id + ".json")).read_text())
+              for table_id in report_tables.tables_of(columns)}
     NEEDS.mkdir(exist_ok=True)
     (NEEDS / (name + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
     shutil.copyfile(study / "results.csv", NEEDS / (name + ".csv"))

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of the report of a study that varies settings, for the pages of docs/results.
+
+`stored` has such tables by their id. A column is ID=HEAD, or FINAL_ID/LIVE_ID=HEAD for both figures in a cell; HEAD has _
+for blanks.
+"""
+import math
+import re
+import statistics
+
+
+def tables_of(columns):
+    """The ids that columns name."""
+    return sorted({table for column in columns for table in column.partition("=")[0].split("/")})
+
+
+def cell_text(cell, live=None):
+    """With its range, how many of how many runs kept track, if one did not, and the live figure."""
+    spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
+    text = cell["text"] or "-"
+    if cell.get("bold"):
+        text = f"**{text}**"
+    if live and live["text"] and text != "lost":
+        text += f" / {live['text']} live"
+    return f"{text} ({spread})" if spread else text
+
+
+def side_by_side(stored, columns, names):
+    """Markdown with a row for each variation; `names`: of methods in words."""
+    head, rows = [""], {}
+    for tables, _, title in (column.partition("=") for column in columns):
+        final, _, live = tables.partition("/")
+        live_rows = {row[0]["text"]: row for row in stored[live]["rows"]} if live else {}
+        methods = [method.partition(", ")[2].removesuffix(" (tuned)") for method in stored[final]["head"][1:]]
+        for i, method in enumerate(methods, 1):
+            label = title.replace("_", " ")
+            head.append(f"{label}, {names.get(method, f'`{method}`')}" if len(methods) > 1 else label)
+            for row in stored[final]["rows"]:
+                live_cell = live_rows[row[0]["text"]][i] if live else None
+                rows.setdefault(row[0]["text"], {})[head[-1]] = cell_text(row[i], live_cell)
+    lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
+    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
+    return "\n".join(lines)
+
+
+def wrong_medians(stored, runs, judged):
+    """Cells of the sweeps that are not the median of the runs. `judged(run, column)`: infinite for a lost run."""
+    for name, table in stored.items():
+        if not (found := re.fullmatch(r"sweep-(\w+)-(\w+)", name)):
+            continue
+        column, = (c for c in runs[0] if re.fullmatch(found[1] + "_(cm|percent|deg|MB)", c))
+        for label, *cells in table["rows"]:
+            for title, cell in zip(table["head"][1:], cells):
+                sensor, method, preset = re.fullmatch(r"(\w+), (\w+)(?: \((\w+)\))?", title).groups("")
+                values = [judged(run, column) for run in runs
+                          if (run["world"], run["sensor"], run["algorithm"], run["preset"], run["variation"] or "base")
+                          == (found[2], sensor, method, preset, label["text"])]
+                values = [value for value in values if value is not None]
+                median = statistics.median(values) if values else math.nan
+                told = math.inf if cell["text"] == "lost" or cell["text"].startswith("ended") else cell.get("value", math.nan)
+                if told != median and not math.isclose(told, median, rel_tol=1e-6) and not (math.isnan(told) and math.isnan(median)):
+                    yield f"{name}, {label['text']}, {title}: {cell['text']}, but the runs give {median}"
