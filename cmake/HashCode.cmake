@@ -10,7 +10,9 @@ set(simulator base world scenes flight sensor dataset stages/simulate_dataset st
 set(method base dataset map estimation loop odometry evaluation/map/reproject
     stages/simulate_dataset stages/run_algorithm stages/run_external
     stages/foreign_program stages/recorder stages/event_record stages/motion_record)
-set(scorer base dataset world estimation map results evaluation stages/score_run)
+set(scorer base dataset world estimation map evaluation stages/score_run results/run_metrics
+    results/trajectory_metrics results/map_metrics results/resource_metrics results/summary
+    results/figures results/known_row)
 
 # The names under which a file of a module belongs to a part. A file in a folder of odometry/ is of
 # that method alone.

@@ -22,6 +22,14 @@ ImuNoise noise_of(const ImuInfo& imu, double factor) {
           density(imu.accel_bias_walk, kNominalNoise.accel_bias_walk)};
 }
 
+ImuInfo at_least_nominal(ImuInfo imu) {
+  imu.gyro_noise_density = std::max(imu.gyro_noise_density, kNominalNoise.gyro_density);
+  imu.accel_noise_density = std::max(imu.accel_noise_density, kNominalNoise.accel_density);
+  imu.gyro_bias_walk = std::max(imu.gyro_bias_walk, kNominalNoise.gyro_bias_walk);
+  imu.accel_bias_walk = std::max(imu.accel_bias_walk, kNominalNoise.accel_bias_walk);
+  return imu;
+}
+
 void MeasuredNoise::add(const ImuSample& sample) {
   constexpr std::size_t kSamples = 5;
   constexpr double kMean_s = 1.0;

@@ -25,6 +25,9 @@ inline constexpr double kMaxPlausibleSpeed = 100.0;
 /// The noise that a rig names, times `factor`; what it leaves out (zero) is a Mid-360's.
 ImuNoise noise_of(const ImuInfo& imu, double factor);
 
+/// The same IMU with at least the noise of a Mid-360's.
+ImuInfo at_least_nominal(ImuInfo imu);
+
 /// The white noise that the samples of an IMU show, vibration included, as a running mean over
 /// about a second: their fourth differences, in which the motion of a body hardly appears (a motion
 /// of 2 Hz, sampled at 200 Hz, to 2e-6). Of white noise of variance v they have the variance 70 v,

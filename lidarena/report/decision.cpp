@@ -167,12 +167,12 @@ std::string words_of(const Domination& domination, std::span<const Claim> claims
   const std::string by = name_of(*domination.winner);
   if (claims.empty()) return by + ": as good, by the sensor's data sheet alone";
   if (medians.empty())
-    return fmt::format("{}: better in {} (5 % level, {} pairs)", by, shown, claims[0].pairs);
+    return fmt::format("{}: better in {} (5 % level, {} pairs)", by, shown, claims[0].independent);
   const std::string tested = shown.empty() ? "" : fmt::format("better in {} (5 % level); ", shown);
   const std::string untested =
-      claims[0].pairs < results::kMinPairs
+      claims[0].independent < results::kMinPairs
           ? "untested, " + claims[0].words()
-          : fmt::format("not shown by the test, {} pairs", claims[0].pairs);
+          : fmt::format("not shown by the test, {} pairs", claims[0].independent);
   return fmt::format("{}: {}better in the medians of {} ({})", by, tested, medians, untested);
 }
 

@@ -263,6 +263,17 @@ struct PageChange {
   }
 };
 
+struct NotFlownRun {
+  static constexpr const char* kTitle = "NotFlownRun";
+  std::string name, reason;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("name", self.name, "", "");
+    v("reason", self.reason, "", "why its flight could not be simulated");
+  }
+};
+
 struct ReportData {
   std::string title, version;
   std::vector<std::string> made_on;
@@ -276,6 +287,7 @@ struct ReportData {
   std::vector<EventKind> event_kinds;
   std::vector<results::Table> tables;
   std::vector<PageRun> runs;
+  std::vector<NotFlownRun> not_flown;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -292,6 +304,7 @@ struct ReportData {
     v("event_kinds", self.event_kinds, "", "");
     v("tables", self.tables, "", "");
     v("runs", self.runs, "", "");
+    v("not_flown", self.not_flown, "", "runs that count for no method");
   }
 };
 

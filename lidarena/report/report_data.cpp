@@ -334,10 +334,12 @@ ReportData report_data(const results::StudyResults& results,
                   .reference = results.reference,
                   .event_kinds = event_kinds(),
                   .tables = tables,
-                  .runs = {}};
+                  .runs = {},
+                  .not_flown = {}};
   const std::size_t rows =
       std::min(kMaxRows, kRowsOfAllCurves / std::max<std::size_t>(results.rows.size(), 1));
   for (const RunRecord& row : results.rows) data.runs.push_back(page_run(row, out, rows));
+  for (const RunRecord& row : results.not_flown) data.not_flown.push_back({row.name, row.reason});
   return data;
 }
 

@@ -96,13 +96,16 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
 }
 
 Table failures_table(const results::StudyResults& results) {
-  Table table{"failures", "Runs that are lost", "", {"run", "state", "reason"}, {}};
+  Table table{
+      "failures", "Runs that are lost or were not flown", "", {"run", "state", "reason"}, {}};
   for (const results::RunRecord& row : results.rows) {
     const std::string lost = results::lost_reason(row);
     if (lost.empty()) continue;
     table.rows.push_back({word(row.name), word(row.status == "ok" ? "lost" : row.status),
                           word(row.status == "ok" ? lost : row.reason)});
   }
+  for (const results::RunRecord& row : results.not_flown)
+    table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
   return table;
 }
 

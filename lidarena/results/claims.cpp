@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -20,31 +21,37 @@ using Place = std::tuple<std::string, std::string, std::string, std::uint64_t>;
 
 Place place_of(const RunRecord& run) { return {run.world, run.flight, run.mode, run.seed}; }
 
-/// The log ratios of the pairs, those of a world in one stratum.
-std::vector<std::vector<double>> log_ratios_of(const Contest& contest) {
+struct Pairs {
+  std::map<std::string, std::vector<double>> log_ratios;        ///< by world
+  std::set<std::pair<std::string, std::uint64_t>> independent;  ///< their worlds and seeds
+};
+
+Pairs pairs_of(const Contest& contest) {
   std::map<Place, const RunRecord*> others;
   for (const RunRecord* run : contest.b) others[place_of(*run)] = run;
-  std::map<std::string, std::vector<double>> strata;
+  Pairs pairs;
   for (const RunRecord* run : contest.a) {
     const auto other = others.find(place_of(*run));
     if (other == others.end()) continue;
     const auto a = judged_value(*run, *contest.figure);
     const auto b = judged_value(*other->second, *contest.figure);
     if (!a || !b) continue;
-    if (const auto ratio = log_ratio(*a, *b)) strata[run->world].push_back(*ratio);
+    const auto ratio = log_ratio(*a, *b);
+    if (!ratio) continue;
+    pairs.log_ratios[run->world].push_back(*ratio);
+    pairs.independent.emplace(run->world, run->seed);
   }
-  std::vector<std::vector<double>> found;
-  for (auto& [world, ratios] : strata) found.push_back(std::move(ratios));
-  return found;
+  return pairs;
 }
 
 }  // namespace
 
 std::string Claim::words() const {
-  if (pairs == 0) return "no pairs: untested";
+  if (independent == 0) return "no pairs: untested";
   if (pairs == 1) return "one run a cell: no claim";
-  if (pairs < kMinPairs) return fmt::format("{} pairs: too few for a claim", pairs);
-  return p ? fmt::format("{} pairs, p = {:.2g}", pairs, *p) : fmt::format("{} equal pairs", pairs);
+  if (independent < kMinPairs) return fmt::format("{} pairs: too few for a claim", independent);
+  return p ? fmt::format("{} pairs, p = {:.2g}", independent, *p)
+           : fmt::format("{} equal pairs", independent);
 }
 
 std::string Claim::ratio_words() const {
@@ -60,11 +67,17 @@ std::vector<Claim> claims_of(std::span<const Contest> contests) {
   std::vector<double> p;
   std::vector<bool> b_is_smaller;
   for (const Contest& contest : contests) {
-    const StratifiedComparison compared = compare_strata(log_ratios_of(contest));
-    claims.push_back(
-        {compared.pairs, std::nullopt, false, false, compared.ratio, compared.ratio_95});
+    const Pairs made = pairs_of(contest);
+    std::vector<std::vector<double>> strata;
+    for (const auto& [world, ratios] : made.log_ratios) strata.push_back(ratios);
+    const StratifiedComparison compared = compare_strata(strata);
+    claims.push_back({.pairs = compared.pairs,
+                      .independent = made.independent.size(),
+                      .p = std::nullopt,
+                      .ratio = compared.ratio,
+                      .ratio_95 = compared.ratio_95});
     b_is_smaller.push_back(compared.b_is_smaller);
-    if (compared.pairs < kMinPairs || !compared.p) continue;
+    if (claims.back().independent < kMinPairs || !compared.p) continue;
     claims.back().p = compared.p;
     p.push_back(*compared.p);
   }
@@ -81,10 +94,10 @@ std::vector<Claim> claims_of(std::span<const Contest> contests) {
 }
 
 std::string words_of(std::span<const Claim> claims) {
-  const auto fewest = std::ranges::min_element(claims, {}, &Claim::pairs);
+  const auto fewest = std::ranges::min_element(claims, {}, &Claim::independent);
   if (fewest == claims.end()) return "nothing to compare";
-  return fewest->pairs < kMinPairs ? fewest->words()
-                                   : fmt::format("at least {} pairs", fewest->pairs);
+  return fewest->independent < kMinPairs ? fewest->words()
+                                         : fmt::format("at least {} pairs", fewest->independent);
 }
 
 }  // namespace lidarena::results

@@ -17,7 +17,6 @@
 namespace lidarena::results {
 namespace {
 
-constexpr std::size_t kMinFlightsOfInterval = 3;
 constexpr std::size_t kMaxParts = 10;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -42,8 +42,8 @@ struct Contributions {
 /// in which a lost run is infinite; there are no contributions if the median of any combination is
 /// that of a lost run. The intervals are percentile bootstraps over flights and seeds, the same
 /// ones for all combinations; a resample with a lost median counts as the lowest and as the
-/// highest, and there is no interval below three flights. Bit-identical for the same runs in any
-/// order.
+/// highest, and there is no interval below kMinFlightsOfInterval. Bit-identical for the same
+/// runs in any order.
 std::vector<Contributions> contributions_of(const StudyResults& results,
                                             std::span<const Figure* const> figures,
                                             std::size_t resamples = 2000);

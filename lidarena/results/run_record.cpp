@@ -62,8 +62,8 @@ void read_row(RunRecord& row) {
   take(row.sensor, row.manifest->sensor);
   read_dataset_manifest(row);
   if (row.manifest->status == dataset::RunStatus::kFailed) {
-    row.status = "failed";
     row.reason = row.manifest->reason;
+    row.status = row.reason.starts_with(kFlightFailed) ? kNotFlown : "failed";
     return;
   }
   row.key = key_of(row.folder);
@@ -186,7 +186,7 @@ StudyResults read_results(const fs::path& folder) {
                      sensors_beside(study, run)};
       read_row(row);
       if (const std::string as = run.value("as", ""); !as.empty()) row.algorithm = as;
-      results.rows.push_back(std::move(row));
+      (row.status == kNotFlown ? results.not_flown : results.rows).push_back(std::move(row));
     }
   } else if (dataset::is_run(folder)) {
     RunRecord row;
@@ -221,6 +221,10 @@ StudyResults merged(std::vector<StudyResults> parts) {
       }
     }
   }
+  for (StudyResults& part : parts) {
+    for (RunRecord& row : part.not_flown)
+      if (places.emplace(row.name, 0).second) all.not_flown.push_back(std::move(row));
+  }
   return all;
 }
 
@@ -230,14 +234,16 @@ std::string results_csv(const StudyResults& results) {
                 "mode", "seed",  "status", "reason", "coverage_percent", "ended_at_s"};
   for (const Figure& figure : figures()) table.head.push_back(column_of(figure));
   const std::vector<std::string> varied = varied_keys(results.rows);
-  const bool varies =
-      std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.variation.empty(); });
+  const bool varies = std::ranges::any_of(
+      results.rows, [](const RunRecord& run) { return !run.variation.empty(); });
   if (varies) table.head.emplace_back("variation");
   table.head.insert(table.head.end(), varied.begin(), varied.end());
   const bool has_keys =
       std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.key.empty(); });
   if (has_keys) table.head.insert(table.head.end(), {"own_map", "zero_bounds", "key"});
-  for (const RunRecord& r : results.rows) {
+  std::vector<RunRecord> rows = results.rows;
+  rows.insert(rows.end(), results.not_flown.begin(), results.not_flown.end());
+  for (const RunRecord& r : rows) {
     std::vector<TableCell> row;
     for (const std::string& text : {r.name, r.world, r.flight, r.sensor, r.algorithm, r.preset,
                                     r.mode, std::to_string(r.seed), r.status, r.reason}) {

@@ -32,7 +32,7 @@ struct RunRecord {
   Json varied = Json::object();      ///< each key that the study varies, with its value in this run
   std::vector<std::string> differs;  ///< those whose value is not that of the base, or a set's name
   std::uint64_t seed = 0;
-  std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
+  std::string status = "ok";  ///< ok, diverged, failed, not scored, not flown, ...
   std::string reason;
   std::optional<RunMetrics> metrics;  ///< empty if the run was not scored
   std::optional<KnownRow> known;      ///< its figures, if they are all that is left of it
@@ -63,9 +63,15 @@ std::vector<std::string> varied_keys(const std::vector<RunRecord>& runs);
 /// Sets the metrics and the status.
 void set_metrics(RunRecord& run, RunMetrics metrics);
 
+/// Status of a run whose flight could not be simulated: no method has seen it.
+inline constexpr const char* kNotFlown = "not flown";
+/// What the reason of such a run begins with.
+inline constexpr const char* kFlightFailed = "flight: ";
+
 struct StudyResults {
   std::string title;
-  std::vector<RunRecord> rows;
+  std::vector<RunRecord> rows;       ///< without those that were not flown
+  std::vector<RunRecord> not_flown;  ///< they count for no method and are in no figure
   std::vector<Expectation> expect;
   std::vector<ReferenceFigure> reference;  ///< published figures, shown beside those of the runs
 };

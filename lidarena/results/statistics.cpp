@@ -15,7 +15,6 @@
 namespace lidarena::results {
 namespace {
 
-constexpr std::size_t kMinFlights = 3;  // of two there are only three different resamples
 constexpr std::size_t kExact = 50;
 
 /// Values of each flight, sorted by its name, so that the order of the runs does not matter.
@@ -31,7 +30,7 @@ std::vector<double> all_values(const ByFlight& flights) {
 
 std::optional<Interval> bootstrap_median(ByFlight flights, std::uint64_t seed,
                                          std::size_t resamples) {
-  if (flights.size() < kMinFlights || resamples == 0) return std::nullopt;
+  if (flights.size() < kMinFlightsOfInterval || resamples == 0) return std::nullopt;
   std::vector<std::vector<double>> groups;
   for (auto& [name, values] : flights) {
     std::sort(values.begin(), values.end());

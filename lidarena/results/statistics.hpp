@@ -37,7 +37,7 @@ struct Spread {
   std::size_t flights = 0;            ///< flights with at least one value, lost runs included
   std::vector<std::string> failures;  ///< "FLIGHT SEED: reason", in the order of the runs
   std::optional<double> median, best, worst;  ///< empty where no run that is kept has the figure
-  std::optional<Interval> median_95;          ///< empty with fewer than three flights
+  std::optional<Interval> median_95;          ///< empty below kMinFlightsOfInterval
   /// Where the median is a share of zero: the largest of the upper bounds of such shares.
   std::optional<double> zero_bound;
 
@@ -45,6 +45,9 @@ struct Spread {
 };
 
 inline constexpr std::size_t kResamples = 10'000;
+/// An interval at 95 % needs as many flights: the range of five holds the median of what they are
+/// drawn from with a probability of 1 - 2 / 2^5 = 94 %, that of six with 97 %.
+inline constexpr std::size_t kMinFlightsOfInterval = 6;
 
 /// The interval is the percentile bootstrap (Efron, Tibshirani, "An introduction to the bootstrap",
 /// 1993, ch. 13) of the median over *flights*: a flight is drawn with all of its runs, because runs

@@ -12,6 +12,7 @@
 
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/run_manifest.hpp"
+#include "lidarena/results/run_record.hpp"
 #include "lidarena/stages/process.hpp"
 #include "lidarena/stages/run_algorithm.hpp"
 #include "lidarena/stages/run_external.hpp"
@@ -231,7 +232,7 @@ class Runner {
     for (Task& run : std::exchange(unit.waiting, {})) {
       fs::create_directories(run.folder);
       fs::copy_file(slot.command.log, run.folder / kLog, fs::copy_options::overwrite_existing);
-      publish_failure(unit, run, "flight: " + reason, seconds_since(slot.begin));
+      publish_failure(unit, run, results::kFlightFailed + reason, seconds_since(slot.begin));
     }
   }
 

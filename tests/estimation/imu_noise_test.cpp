@@ -66,6 +66,19 @@ TEST(MeasuredNoise, StatedDensitiesHoldWhereTheyAreLarger) {
   EXPECT_EQ(both.accel_bias_walk, told.accel_bias_walk);
 }
 
+TEST(NominalNoise, IsTheLeastOfABetterImuAndLeavesAWorseOneAsItIs) {
+  ImuInfo imu;
+  imu.gyro_noise_density = 1e-6;
+  imu.accel_noise_density = 2e-3;
+  imu.gyro_bias_walk = 1e-7;
+  imu.accel_bias_walk = 1e-3;
+  const ImuInfo least = at_least_nominal(imu);
+  EXPECT_EQ(least.gyro_noise_density, 7.85e-5);
+  EXPECT_EQ(least.gyro_bias_walk, 1e-5);
+  EXPECT_EQ(least.accel_noise_density, 2e-3);
+  EXPECT_EQ(least.accel_bias_walk, 1e-3);
+}
+
 TEST(MeasuredNoise, AStepAcrossAGapIsNoNoise) {
   MeasuredNoise measured;
   for (int i = 0; i < 400; ++i) {

@@ -23,7 +23,19 @@ def parts(code):
     return {"simulator": code["simulator"], "scorer": code["scorer"], **code["methods"]}
 
 
+def check_scorer(source):
+    """Of results/, the scorer's hash covers every header that the code behind it includes."""
+    covered = set(re.findall(r"results/\w+", re.search(r"set\(scorer ([^)]*)\)", (source / "cmake/HashCode.cmake").read_text())[1]))
+    library = source / "lidarena"
+    files = [*library.glob("evaluation/**/*.?pp"), *library.glob("stages/score_run.?pp"), *library.glob("dataset/*.?pp"),
+             *library.glob("map/*.?pp"), *(library / f"{name}{end}" for name in covered for end in (".hpp", ".cpp"))]
+    included = {name for file in files if file.exists()
+                for name in re.findall(r'#include "lidarena/(results/\w+)\.hpp"', file.read_text())}
+    assert included <= covered, f"the scorer's hash does not cover {included - covered}"
+
+
 def main(cmake, source):
+    check_scorer(source)
     with tempfile.TemporaryDirectory() as folder:
         library = pathlib.Path(folder) / "lidarena"
         shutil.copytree(source / "lidarena", library)
@@ -40,6 +52,8 @@ def main(cmake, source):
                                     ("evaluation/map/ghosting.cpp", "int x = 1;", {"scorer"}),
                                     ("evaluation/map/reproject.hpp", "int x = 1;", methods | {"scorer"}),
                                     ("sensor/lidar.cpp", "int x = 1;", {"simulator"}),
+                                    ("results/figures.cpp", "int x = 1;", {"scorer"}),
+                                    ("results/claims.cpp", "int x = 1;", set()),
                                     ("report/decision.cpp", "int x = 1;", set()),
                                     ("base/so3.cpp", "int x = 1;", set(before))]:
             path = library / file

@@ -226,9 +226,14 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   made.new_scene = true;
   made.seconds = 20.0;
   results.rows[0].sources = {"/my worlds/cave.ply", "cave", {"livox_mid360", "ouster_os0_128"}};
+  results.not_flown.push_back(results.rows[0]);
+  results.not_flown[0].status = results::kNotFlown;
+  results.not_flown[0].reason = "flight: no room";
   const results::Table failures = failures_table(results);
-  ASSERT_EQ(failures.rows.size(), 1U) << "a run whose map lies mostly elsewhere is not lost";
+  ASSERT_EQ(failures.rows.size(), 2U) << "a run whose map lies mostly elsewhere is not lost";
   EXPECT_EQ(failures.rows[0][2].text, "estimate left the world");
+  EXPECT_EQ(failures.rows[1][1].text, "not flown");
+  EXPECT_EQ(failures.rows[1][2].text, "flight: no room");
   const results::Table runs = runs_table(results, "cave");
   ASSERT_EQ(runs.rows.at(2).size(), runs.head.size());
   EXPECT_EQ(runs.rows[2][1].text, "diverged: estimate left the world");

@@ -45,6 +45,20 @@ TEST(Claims, NeedSixteenPairsPooledOverWorlds) {
   EXPECT_EQ(claim_of(one, one).words(), "one run a cell: no claim");
 }
 
+TEST(Claims, CountTwoFlightsOfASeedOnceSinceTheyShareItsWorld) {
+  std::vector<RunRecord> a = runs_of("a", 1.0, 4), b = runs_of("b", 2.0, 4);
+  for (std::vector<RunRecord>* runs : {&a, &b}) {
+    std::vector<RunRecord> other = *runs;
+    for (RunRecord& run : other) run.flight = "another route";
+    runs->insert(runs->end(), other.begin(), other.end());
+  }
+  const Claim claim = claim_of(a, b);
+  EXPECT_EQ(claim.pairs, 16U);
+  EXPECT_EQ(claim.independent, 8U) << "four seeds in two worlds";
+  EXPECT_FALSE(claim.a_is_better);
+  EXPECT_EQ(claim.words(), "8 pairs: too few for a claim");
+}
+
 TEST(Claims, LostRunsDecideAgainstTheMethodThatLosesThem) {
   // better on 10 of 16 pairs by 1 %, lost on the other six: without these it would be the better
   // one

@@ -25,10 +25,14 @@ constexpr int kFirstPasses = 5;           // over the first two scans
 constexpr double kAccelSurprise = 10.0;
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
 
-/// The data sheet's noise, with a factor for each of the two sensors.
+/// The data sheet's noise, but at least the nominal one, with a factor for each of the two sensors.
+/// The factors stand for errors that no data sheet states, such as those of the integration from
+/// sample to sample. They are the same with a better IMU.
 estimation::ImuNoise noise_for(const ImuInfo& imu, const Config& config) {
-  estimation::ImuNoise noise = estimation::noise_of(imu, config.gyro_noise_factor);
-  const estimation::ImuNoise of_accel = estimation::noise_of(imu, config.accel_noise_factor);
+  const ImuInfo at_least_nominal = estimation::at_least_nominal(imu);
+  estimation::ImuNoise noise = estimation::noise_of(at_least_nominal, config.gyro_noise_factor);
+  const estimation::ImuNoise of_accel =
+      estimation::noise_of(at_least_nominal, config.accel_noise_factor);
   noise.accel_density = of_accel.accel_density;
   noise.accel_bias_walk = of_accel.accel_bias_walk;
   return noise;

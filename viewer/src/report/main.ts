@@ -254,10 +254,13 @@ class Report implements Page {
     const bad = this.listed.filter((run) => run.lost);
     const failed: ShownTable = {
       id: "failures",
-      title: "Runs that are lost",
-      note: "",
+      title: "Runs that are lost or were not flown",
+      note: "A run that was not flown counts for no method.",
       head: ["run", "state", "reason"],
-      rows: bad.map((run) => [open(run), word(run.status === "ok" ? "lost" : run.status), word(run.lost)]),
+      rows: [
+        ...bad.map((run) => [open(run), word(run.status === "ok" ? "lost" : run.status), word(run.lost)]),
+        ...this.data.not_flown.map(({ name, reason }) => [word(name), word("not flown"), word(reason)]),
+      ],
     };
     const all: ShownTable = {
       id: "runs",
@@ -288,7 +291,7 @@ class Report implements Page {
         ...main.map(({ i, key }) => number(run.values[i], run.zero_bounds?.[key])),
       ]),
     };
-    return [element("h2", {}, "Runs"), bad.length > 0 ? tableElement(failed) : "", tableElement(all)];
+    return [element("h2", {}, "Runs"), failed.rows.length > 0 ? tableElement(failed) : "", tableElement(all)];
   }
 
   private tables(): HTMLElement {

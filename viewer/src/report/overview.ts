@@ -171,7 +171,7 @@ function matrixNote({ data, runs, settings }: Page, best: string | null): HTMLEl
     `${info.more_is_better ? "Large" : "Small"} is good. ` +
     (best
       ? "The frame is by a test of the paired runs of all worlds (log ratios, ranked within each world), at 5 % after Holm's correction for all figures. "
-      : "No combination is shown by the test (at least 16 pairs of runs, 5 %) to be better than every other one in sight. ") +
+      : "No combination is shown by the test (at least 16 pairs of runs that share no world and seed, 5 %) to be better than every other one in sight. ") +
     (means.length > 0 ? `The points of the own maps of ${means.join(", ")} are means of several returns, which removes noise. ` : "") +
     (most ? `Of large maps a sample is scored (${most[0]} of ${most[1]} points). ` : "") +
     "A click opens a run; arrow keys move between the cells.";

@@ -19,6 +19,8 @@ export interface ReportData {
   event_kinds: EventKind[];
   tables: Table[];
   runs: Run[];
+  /** runs that count for no method */
+  not_flown: NotFlownRun[];
 }
 
 export interface FigureInfo {
@@ -255,4 +257,10 @@ export interface ResourcesOverTime {
   scan_buffer_bytes: number[];
   /** [B] */
   backlog_bytes: number[];
+}
+
+export interface NotFlownRun {
+  name: string;
+  /** why its flight could not be simulated */
+  reason: string;
 }
