@@ -184,11 +184,13 @@ std::string table_latex(const Table& table) {
 }
 
 std::string table_text(const Table& table) {
+  const auto text_of = [](const TableCell& cell) {
+    return shown(cell, "-") + live_of(cell) + (cell.spread.empty() ? "" : " [" + cell.spread + "]");
+  };
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     widths.push_back(table.head[i].size());
-    for (const auto& row : table.rows)
-      widths[i] = std::max(widths[i], (shown(row[i], "-") + live_of(row[i])).size());
+    for (const auto& row : table.rows) widths[i] = std::max(widths[i], text_of(row[i]).size());
   }
   std::string text;
   const auto add = [&](std::size_t i, const std::string& cell) {
@@ -199,7 +201,7 @@ std::string table_text(const Table& table) {
   };
   for (std::size_t i = 0; i < table.head.size(); ++i) add(i, table.head[i]);
   for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) add(i, shown(row[i], "-") + live_of(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) add(i, text_of(row[i]));
   }
   return text;
 }

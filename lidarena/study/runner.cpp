@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <deque>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -89,12 +91,18 @@ class Runner {
       if (!is_busy() && (stop != Stop::kNo || queue_.is_finished())) break;
       std::this_thread::sleep_for(stages::kPollPeriod);
     }
+    count_repeated_warnings();
     done_.is_interrupted = queue_.has_work();
     if (!done_.is_interrupted) log_.progress("study", 1.0, 1.0);
     return done_;
   }
 
  private:
+  struct Warning {
+    std::string first;     ///< as it came
+    std::size_t more = 0;  ///< that differ in figures alone
+  };
+
   bool is_busy() const {
     return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.process != nullptr; });
   }
@@ -107,6 +115,7 @@ class Runner {
   }
 
   WorkDone interrupt() {
+    count_repeated_warnings();
     for (Slot& slot : slots_) slot.process.reset();
     slots_.clear();
     queue_.give_up();
@@ -286,12 +295,29 @@ class Runner {
                           std::ceil(seconds_since(begin_) * left / done / 60.0)));
   }
 
-  /// Passes on the warnings of the task's programs.
+  /// Passes on the warnings of the task's programs. One that differs from an earlier one in figures
+  /// alone is counted.
   void pass_on_warnings(const Task& task) {
     constexpr std::string_view kWarning = "warning: ";
     std::ifstream file(task.folder / kLog);
     for (std::string line; std::getline(file, line);) {
-      if (line.starts_with(kWarning)) log_.warn(task.name + ": " + line.substr(kWarning.size()));
+      if (!line.starts_with(kWarning)) continue;
+      const std::string text = line.substr(kWarning.size());
+      std::string kind = text;
+      std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
+      const auto [warning, is_new] = warnings_.try_emplace(kind, Warning{text});
+      if (is_new)
+        log_.warn(task.name + ": " + text);
+      else
+        ++warning->second.more;
+    }
+  }
+
+  void count_repeated_warnings() {
+    for (const auto& [kind, warning] : warnings_) {
+      if (warning.more > 0)
+        log_.warn(
+            fmt::format("{} more runs, with their own figures: {}", warning.more, warning.first));
     }
   }
 
@@ -304,6 +330,7 @@ class Runner {
   std::vector<Slot> slots_;  // end before the folders that they work in
   Clock::time_point begin_ = Clock::now();
   std::optional<Clock::time_point> stop_seen_;
+  std::map<std::string, Warning> warnings_;  // by the text without figures
   WorkDone done_;
 };
 

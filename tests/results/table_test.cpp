@@ -27,6 +27,9 @@ TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
   EXPECT_THAT(table_markdown(table), HasSubstr("| a,b | **1.23** (1.08) | <u>5.90e-04</u> |"));
   EXPECT_THAT(table_latex(table), HasSubstr("\\textbf{1.23} (1.08) & \\underline{5.90e-04} \\\\"));
   EXPECT_EQ(table_text(table), "sensor   x_1  y\na,b     1.23  5.90e-04\nc          7  -\n");
+  Table with_interval = table;
+  with_interval.rows[1][1].spread = "5 to 9";
+  EXPECT_THAT(table_text(with_interval), HasSubstr("c       7 [5 to 9]  -"));
   EXPECT_THAT(table_latex(table), HasSubstr("sensor & x\\_1 & y"));
   EXPECT_EQ(lidarena::to_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
 }

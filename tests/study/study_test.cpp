@@ -227,6 +227,35 @@ TEST(RunStudy, AFlightThatFailsAfterItsManifestIsNotTakenForWhole) {
   EXPECT_TRUE(std::filesystem::is_empty(scratch.path() / "out/datasets"));
 }
 
+/// Keeps the warnings.
+class WarningList : public LogSink {
+ public:
+  void message(LogLevel level, std::string_view text) override {
+    if (level == LogLevel::kWarning) texts.emplace_back(text);
+  }
+  std::vector<std::string> texts;
+};
+
+TEST(RunStudy, AWarningThatDiffersInFiguresAloneIsShownOnceAndCounted) {
+  const TemporaryFolder scratch;
+  const std::filesystem::path program = scratch.path() / "lidarena";
+  std::ofstream(program) << "#!/bin/sh\n[ \"$1\" = evaluate ] && echo \"warning: $$.5 cm too far\" "
+                            ">&2\n" LIDARENA_BINARY " \"$@\"\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  StudyOptions options;
+  options.program = program;
+  StudySpec spec = tiny_spec();
+  spec.seeds = {1, 2, 3};
+  WarningList log;
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "out", options, log).runs, 3U);
+  std::vector<std::string> ours;
+  std::ranges::copy_if(log.texts, std::back_inserter(ours),
+                       [](const std::string& text) { return text.ends_with(".5 cm too far"); });
+  ASSERT_EQ(ours.size(), 2U);
+  EXPECT_THAT(ours[0], HasSubstr("house-house-s1"));
+  EXPECT_THAT(ours[1], HasSubstr("2 more runs, with their own figures: "));
+}
+
 TEST(ProgramCode, OfAProgramThatWasKilledSaysSo) {
   const TemporaryFolder scratch;
   const std::filesystem::path program = scratch.path() / "lidarena";
