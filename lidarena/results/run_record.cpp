@@ -241,9 +241,7 @@ std::string results_csv(const StudyResults& results) {
   const bool has_keys =
       std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.key.empty(); });
   if (has_keys) table.head.insert(table.head.end(), {"own_map", "zero_bounds", "key"});
-  std::vector<RunRecord> rows = results.rows;
-  rows.insert(rows.end(), results.not_flown.begin(), results.not_flown.end());
-  for (const RunRecord& r : rows) {
+  const auto add = [&](const RunRecord& r) {
     std::vector<TableCell> row;
     for (const std::string& text : {r.name, r.world, r.flight, r.sensor, r.algorithm, r.preset,
                                     r.mode, std::to_string(r.seed), r.status, r.reason}) {
@@ -265,7 +263,9 @@ std::string results_csv(const StudyResults& results) {
       row.push_back(word(r.key));
     }
     table.rows.push_back(std::move(row));
-  }
+  };
+  std::ranges::for_each(results.rows, add);
+  std::ranges::for_each(results.not_flown, add);
   return table_csv(table);
 }
 

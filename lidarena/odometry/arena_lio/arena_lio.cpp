@@ -26,8 +26,7 @@ constexpr double kAccelSurprise = 10.0;
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
 
 /// The data sheet's noise, but at least the nominal one, with a factor for each of the two sensors.
-/// The factors stand for errors that no data sheet states, such as those of the integration from
-/// sample to sample. They are the same with a better IMU.
+/// The factors stand for errors that no data sheet states, and that a better IMU has, too.
 estimation::ImuNoise noise_for(const ImuInfo& imu, const Config& config) {
   const ImuInfo at_least_nominal = estimation::at_least_nominal(imu);
   estimation::ImuNoise noise = estimation::noise_of(at_least_nominal, config.gyro_noise_factor);
