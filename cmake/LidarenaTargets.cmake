@@ -14,7 +14,9 @@ endif()
 if(CMAKE_UNITY_BUILD)
   # Of files that are compiled together GCC warns as if they were one: names of one hide those of
   # another, and the anonymous namespace of an included file may differ elsewhere.
-  target_compile_options(lidarena_flags INTERFACE -Wno-subobject-linkage -Wno-shadow -Wshadow=local)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(lidarena_flags INTERFACE -Wno-subobject-linkage -Wno-shadow -Wshadow=local)
+  endif()
 endif()
 if(LIDARENA_WARNINGS_AS_ERRORS)
   target_compile_options(lidarena_flags INTERFACE -Werror)
