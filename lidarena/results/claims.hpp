@@ -13,8 +13,8 @@
 /// When a table, the decision or the page may say "better".
 namespace lidarena::results {
 
-/// Fewer independent pairs of runs than this support no claim: pairs of one seed in one world are
-/// not independent, since they share the world, and are counted once.
+/// Fewer independent pairs of runs than this support no claim. Pairs of one seed in one world share
+/// that world and are counted once. The test itself takes each of them.
 inline constexpr std::size_t kMinPairs = 16;
 
 using Runs = std::vector<const RunRecord*>;

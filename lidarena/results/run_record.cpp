@@ -276,7 +276,7 @@ std::string results_text(const StudyResults& results) {
               {"world", "sensor", "algorithm", "RPE cm/m", "live RPE cm/m", "ATE cm", "map RMSE cm",
                "outliers %", "CPU %", "own MB", "status"},
               {}};
-  for (const RunRecord& r : results.rows) {
+  const auto add = [&](const RunRecord& r) {
     const std::string variation = r.variation.empty() ? "" : ", " + r.variation;
     std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r) + variation)};
     for (const Figure* figure :
@@ -288,7 +288,9 @@ std::string results_text(const StudyResults& results) {
     const std::string lost = lost_reason(r);
     row.push_back(word(lost.empty() ? "ok" : lost));
     table.rows.push_back(std::move(row));
-  }
+  };
+  std::ranges::for_each(results.rows, add);
+  std::ranges::for_each(results.not_flown, add);
   return table_text(table);
 }
 

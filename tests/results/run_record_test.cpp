@@ -53,6 +53,7 @@ TEST(ReadResults, ARunThatWasNotFlownIsNoRunOfItsMethod) {
   ASSERT_EQ(results.not_flown.size(), 1U);
   EXPECT_EQ(results.not_flown[0].status, "not flown");
   EXPECT_THAT(results_csv(results), HasSubstr("first,cave,cave,mid,odo,,,1,not flown,flight: no"));
+  EXPECT_THAT(results_text(results), HasSubstr("not flown: flight: no place for a start"));
   EXPECT_EQ(merged({results, results}).not_flown.size(), 1U);
   StudyResults flown_elsewhere = results;
   flown_elsewhere.rows[0].name = "first";
