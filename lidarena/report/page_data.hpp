@@ -263,14 +263,15 @@ struct PageChange {
   }
 };
 
-struct NotFlownRun {
-  static constexpr const char* kTitle = "NotFlownRun";
-  std::string name, reason;
+struct RunWithoutResult {
+  static constexpr const char* kTitle = "RunWithoutResult";
+  std::string name, status, reason;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("name", self.name, "", "");
-    v("reason", self.reason, "", "why its flight could not be simulated");
+    v("status", self.status, "", "missing or not flown");
+    v("reason", self.reason, "", "");
   }
 };
 
@@ -287,7 +288,7 @@ struct ReportData {
   std::vector<EventKind> event_kinds;
   std::vector<results::Table> tables;
   std::vector<PageRun> runs;
-  std::vector<NotFlownRun> not_flown;
+  std::vector<RunWithoutResult> without_result;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -304,7 +305,7 @@ struct ReportData {
     v("event_kinds", self.event_kinds, "", "");
     v("tables", self.tables, "", "");
     v("runs", self.runs, "", "");
-    v("not_flown", self.not_flown, "", "runs that count for no method");
+    v("without_result", self.without_result, "", "runs that count for no method");
   }
 };
 

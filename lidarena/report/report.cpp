@@ -92,7 +92,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   files.shortfalls = results::shortfalls(results);
   files.text_table = results::results_text(results);
   files.missing = static_cast<std::size_t>(
-      std::ranges::count(results.rows, "missing", &results::RunRecord::status));
+      std::ranges::count(results.without_result, results::kMissing, &results::RunRecord::status));
   return files;
 }
 

@@ -335,11 +335,12 @@ ReportData report_data(const results::StudyResults& results,
                   .event_kinds = event_kinds(),
                   .tables = tables,
                   .runs = {},
-                  .not_flown = {}};
+                  .without_result = {}};
   const std::size_t rows =
       std::min(kMaxRows, kRowsOfAllCurves / std::max<std::size_t>(results.rows.size(), 1));
   for (const RunRecord& row : results.rows) data.runs.push_back(page_run(row, out, rows));
-  for (const RunRecord& row : results.not_flown) data.not_flown.push_back({row.name, row.reason});
+  for (const RunRecord& row : results.without_result)
+    data.without_result.push_back({row.name, row.status, row.reason});
   return data;
 }
 

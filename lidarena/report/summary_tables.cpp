@@ -97,14 +97,14 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
 
 Table failures_table(const results::StudyResults& results) {
   Table table{
-      "failures", "Runs that are lost or were not flown", "", {"run", "state", "reason"}, {}};
+      "failures", "Runs that are lost or have no result", "", {"run", "state", "reason"}, {}};
   for (const results::RunRecord& row : results.rows) {
     const std::string lost = results::lost_reason(row);
     if (lost.empty()) continue;
     table.rows.push_back({word(row.name), word(row.status == "ok" ? "lost" : row.status),
                           word(row.status == "ok" ? lost : row.reason)});
   }
-  for (const results::RunRecord& row : results.not_flown)
+  for (const results::RunRecord& row : results.without_result)
     table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
   return table;
 }

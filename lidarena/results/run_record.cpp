@@ -49,7 +49,7 @@ std::string key_of(const fs::path& run) {
 
 void read_row(RunRecord& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
-    row.status = "missing";
+    row.status = kMissing;
     row.reason = "the run has no results yet";
     return;
   }
@@ -186,7 +186,8 @@ StudyResults read_results(const fs::path& folder) {
                      sensors_beside(study, run)};
       read_row(row);
       if (const std::string as = run.value("as", ""); !as.empty()) row.algorithm = as;
-      (row.status == kNotFlown ? results.not_flown : results.rows).push_back(std::move(row));
+      const bool has_result = row.status != kMissing && row.status != kNotFlown;
+      (has_result ? results.rows : results.without_result).push_back(std::move(row));
     }
   } else if (dataset::is_run(folder)) {
     RunRecord row;
@@ -216,14 +217,17 @@ StudyResults merged(std::vector<StudyResults> parts) {
       if (is_new) {
         all.rows.push_back(std::move(row));
       } else if (RunRecord& known = all.rows[place->second];
-                 (!known.metrics && row.metrics) || known.status == "missing") {
+                 !known.metrics && row.metrics) {
         known = std::move(row);
       }
     }
   }
-  for (StudyResults& part : parts) {
-    for (RunRecord& row : part.not_flown)
-      if (places.emplace(row.name, 0).second) all.not_flown.push_back(std::move(row));
+  for (const char* status : {kNotFlown, kMissing}) {
+    for (StudyResults& part : parts) {
+      for (RunRecord& row : part.without_result)
+        if (row.status == status && places.emplace(row.name, 0).second)
+          all.without_result.push_back(std::move(row));
+    }
   }
   return all;
 }
@@ -265,7 +269,7 @@ std::string results_csv(const StudyResults& results) {
     table.rows.push_back(std::move(row));
   };
   std::ranges::for_each(results.rows, add);
-  std::ranges::for_each(results.not_flown, add);
+  std::ranges::for_each(results.without_result, add);
   return table_csv(table);
 }
 
@@ -290,7 +294,7 @@ std::string results_text(const StudyResults& results) {
     table.rows.push_back(std::move(row));
   };
   std::ranges::for_each(results.rows, add);
-  std::ranges::for_each(results.not_flown, add);
+  std::ranges::for_each(results.without_result, add);
   return table_text(table);
 }
 

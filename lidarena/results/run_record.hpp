@@ -63,6 +63,8 @@ std::vector<std::string> varied_keys(const std::vector<RunRecord>& runs);
 /// Sets the metrics and the status.
 void set_metrics(RunRecord& run, RunMetrics metrics);
 
+/// Status of a planned run that has no files yet.
+inline constexpr const char* kMissing = "missing";
 /// Status of a run whose flight could not be simulated: no method has seen it.
 inline constexpr const char* kNotFlown = "not flown";
 /// What the reason of such a run begins with.
@@ -70,17 +72,18 @@ inline constexpr const char* kFlightFailed = "flight: ";
 
 struct StudyResults {
   std::string title;
-  std::vector<RunRecord> rows;       ///< without those that were not flown
-  std::vector<RunRecord> not_flown;  ///< they count for no method and are in no figure
+  std::vector<RunRecord> rows;
+  /// Missing or not flown: they count for no method and are in no figure.
+  std::vector<RunRecord> without_result;
   std::vector<Expectation> expect;
   std::vector<ReferenceFigure> reference;  ///< published figures, shown beside those of the runs
 };
 
-/// Reads a study's folder (plan.json names the runs; one without files becomes a row "missing") or
+/// Reads a study's folder (plan.json names the runs; one without files is missing) or
 /// one RUN folder. Throws InputError if it is neither.
 StudyResults read_results(const std::filesystem::path& folder);
 /// Merges the parts of one study, or several studies. Of runs with the same name, the first one
-/// that was scored is kept, else the first one that is not missing.
+/// that was scored is kept, else the first one that is not missing, else the first one.
 StudyResults merged(std::vector<StudyResults> parts);
 
 /// One row per run with all figures (see column_of()); empty cells for figures that do not exist.

@@ -226,9 +226,9 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   made.new_scene = true;
   made.seconds = 20.0;
   results.rows[0].sources = {"/my worlds/cave.ply", "cave", {"livox_mid360", "ouster_os0_128"}};
-  results.not_flown.push_back(results.rows[0]);
-  results.not_flown[0].status = results::kNotFlown;
-  results.not_flown[0].reason = "flight: no room";
+  results.without_result.push_back(results.rows[0]);
+  results.without_result[0].status = results::kNotFlown;
+  results.without_result[0].reason = "flight: no room";
   const results::Table failures = failures_table(results);
   ASSERT_EQ(failures.rows.size(), 2U) << "a run whose map lies mostly elsewhere is not lost";
   EXPECT_EQ(failures.rows[0][2].text, "estimate left the world");
@@ -282,13 +282,16 @@ TEST(Results, PartsOfAStudyBecomeOneAndWhatWasScoredCounts) {
   one.title = "the study";
   one.rows = {row("cave", "s", "a", 1.0, 0.0), row("cave", "s", "b", 0.0, 0.0)};
   other.rows = {row("cave", "s", "a", 7.0, 0.0), row("cave", "s", "b", 2.0, 0.0)};
-  one.rows[1].metrics.reset();
-  one.rows[1].status = "missing";
+  one.without_result = {one.rows.back()};
+  one.without_result[0].metrics.reset();
+  one.without_result[0].status = results::kMissing;
+  one.rows.pop_back();
   const results::StudyResults all = results::merged({one, other});
   EXPECT_EQ(all.title, "the study");
   ASSERT_EQ(all.rows.size(), 2U);
   EXPECT_EQ(results::value_of(all.rows[0], results::kDrift), 1.0);
   EXPECT_EQ(results::value_of(all.rows[1], results::kDrift), 2.0);
+  EXPECT_TRUE(all.without_result.empty());
 }
 
 TEST(ReportData, HasTheFiguresOfEveryRunUnderTheirKeysAndTheRankingOfWhatWasTried) {

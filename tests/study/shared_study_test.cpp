@@ -234,22 +234,22 @@ TEST_F(SharedStudy, ShardsOfAPlanAreThoseOfItsFirstCallAndTogetherAllOfIt) {
   EXPECT_EQ(status().done, 6U);
 }
 
-TEST_F(SharedStudy, RunsThatNeverCameAreRowsOfTheReport) {
+TEST_F(SharedStudy, RunsThatNeverCameAreMissingInTheReport) {
   plan_study(spec_, configs(), out(), options_);
-  const auto rows = results::read_results(out()).rows;
-  ASSERT_EQ(rows.size(), 6U);
-  for (const results::RunRecord& row : rows) EXPECT_EQ(row.status, "missing") << row.name;
+  const results::StudyResults planned = results::read_results(out());
+  EXPECT_TRUE(planned.rows.empty());
+  ASSERT_EQ(planned.without_result.size(), 6U);
+  for (const results::RunRecord& run : planned.without_result)
+    EXPECT_EQ(run.status, "missing") << run.name;
   // A part of the study in another folder fills them.
   StudyOptions part = options_;
   part.shard = {1, 2};
   run_study(spec_, configs(), scratch_.path() / "part", part, log_);
-  std::size_t missing = 0;
-  for (const results::RunRecord& row :
-       results::merged(
-           {results::read_results(out()), results::read_results(scratch_.path() / "part")})
-           .rows)
-    missing += row.status == "missing" ? 1 : 0;
-  EXPECT_EQ(missing, 6U - read_status(scratch_.path() / "part").done);
+  const results::StudyResults merged =
+      results::merged({planned, results::read_results(scratch_.path() / "part")});
+  const std::size_t done = read_status(scratch_.path() / "part").done;
+  EXPECT_EQ(merged.rows.size(), done);
+  EXPECT_EQ(merged.without_result.size(), 6U - done);
 }
 
 TEST_F(SharedStudy, ATornPlanOrRequestIsNotTakenForAWholeOne) {

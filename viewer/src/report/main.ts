@@ -254,12 +254,12 @@ class Report implements Page {
     const bad = this.listed.filter((run) => run.lost);
     const failed: ShownTable = {
       id: "failures",
-      title: "Runs that are lost or were not flown",
-      note: "A run that was not flown counts for no method.",
+      title: "Runs that are lost or have no result",
+      note: "A run that is missing or was not flown counts for no method.",
       head: ["run", "state", "reason"],
       rows: [
         ...bad.map((run) => [open(run), word(run.status === "ok" ? "lost" : run.status), word(run.lost)]),
-        ...this.data.not_flown.map(({ name, reason }) => [word(name), word("not flown"), word(reason)]),
+        ...this.data.without_result.map((run) => [word(run.name), word(run.status), word(run.reason)]),
       ],
     };
     const all: ShownTable = {

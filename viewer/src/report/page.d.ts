@@ -20,7 +20,7 @@ export interface ReportData {
   tables: Table[];
   runs: Run[];
   /** runs that count for no method */
-  not_flown: NotFlownRun[];
+  without_result: RunWithoutResult[];
 }
 
 export interface FigureInfo {
@@ -259,8 +259,9 @@ export interface ResourcesOverTime {
   backlog_bytes: number[];
 }
 
-export interface NotFlownRun {
+export interface RunWithoutResult {
   name: string;
-  /** why its flight could not be simulated */
+  /** missing or not flown */
+  status: string;
   reason: string;
 }
