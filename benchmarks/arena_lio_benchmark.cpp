@@ -92,8 +92,9 @@ BENCHMARK(average_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond
 void evaluate_residuals(benchmark::State& state) {
   const map::LocalPlanes map = map_of_box();
   const auto points = averages(positions(scan_of(131'072, 2)));
+  const std::vector<Eigen::Vector3f> seen_from(points.size(), Eigen::Vector3f::Zero());
   const Parallel one(1);
-  PlaneResiduals residuals(points, map, 0.01, true, config(), one);
+  PlaneResiduals residuals(points, seen_from, map, 0.01, true, config(), one);
   for (auto _ : state) benchmark::DoNotOptimize(residuals(before().state, true));
   state.counters["points"] = static_cast<double>(points.size());
 }
@@ -112,9 +113,10 @@ BENCHMARK(judge_directions)->Unit(benchmark::kMillisecond);
 void update(benchmark::State& state) {
   const map::LocalPlanes map = map_of_box();
   const auto points = averages(positions(scan_of(static_cast<std::size_t>(state.range(0)), 2)));
+  const std::vector<Eigen::Vector3f> seen_from(points.size(), Eigen::Vector3f::Zero());
   const Parallel one(1);
   for (auto _ : state) {
-    PlaneResiduals residuals(points, map, 0.01, true, config(), one);
+    PlaneResiduals residuals(points, seen_from, map, 0.01, true, config(), one);
     benchmark::DoNotOptimize(estimation::iterated_update(
         before(), std::ref(residuals),
         {config().max_iterations + residuals.narrowing(), 1e-3, config().point_variance_m2}));

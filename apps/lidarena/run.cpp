@@ -46,6 +46,8 @@ void check_options(const RunOptions& o) {
   if (o.external.empty()) odometry::check_algorithm(o.request.odometry);
   if (o.request.parts > 1 && (o.live.asked || !o.external.empty()))
     throw InputError("--parts", "is for Lidarena's own methods on a dataset", "leave it out");
+  if (!o.request.also.empty() && (o.live.asked || !o.external.empty()))
+    throw InputError("--also", "is for Lidarena's own methods on a dataset", "leave it out");
   if (o.live.asked && odometry::parts_of(o.request.odometry) > 1)
     throw InputError("--preset " + o.request.odometry.preset,
                      "takes each sweep in parts, which --live cannot give",
@@ -135,6 +137,11 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
                    "One of the algorithm's presets; default: its first");
   verb->add_option("--sensor", r.read.sensor,
                    "Id or topic of the LiDAR to use, if there are several");
+  verb->add_option("--also", r.also,
+                   "Id or topic of a further LiDAR, whose points are added to the scans; may be "
+                   "repeated; for arena_lio")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--imu-topic", r.read.imu_topic,
                    "Topic of the IMU to use; default: the one that belongs to the LiDAR (live: "
                    "/SENSOR/imu)");

@@ -86,6 +86,7 @@ struct RunManifest {
   std::string dataset, sensor;
   std::optional<Pose> body_from_lidar;
   int threads = 0;
+  std::vector<std::string> also;
   int parts = 1;
   bool paced = false, live = false;
   OwnMap own_map = OwnMap::kReturns;
@@ -108,6 +109,7 @@ struct RunManifest {
     v("sensor", self.sensor, "", "id of the LiDAR");
     v("body_from_lidar", self.body_from_lidar, "", "mounting: x y z (m) qx qy qz qw");
     v("threads", self.threads, "", "");
+    v("also", self.also, "", "ids of further LiDARs whose points are in its scans");
     v("parts", self.parts, "", "scans in which each sweep was handed over");
     v("paced", self.paced, "", "scans were dropped when the method was late");
     v("live", self.live, "", "the run was made of live topics");

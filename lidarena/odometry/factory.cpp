@@ -285,6 +285,11 @@ Algorithm looped(std::string name, std::string summary, bool needs_imu) {
           parts_of_preset<Maker>};
 }
 
+Algorithm with_several_lidars(Algorithm algorithm) {
+  algorithm.info.takes_several_lidars = true;
+  return algorithm;
+}
+
 std::vector<Algorithm> algorithms() {
   return {
       plain<Kiss>("kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo 2023)",
@@ -300,13 +305,15 @@ std::vector<Algorithm> algorithms() {
       plain<LioSamLc>("lio_sam_lc", "LIO-SAM with its loop closure", true),
       plain<ArenaLo>("arena_lo", "our own, LiDAR only: Kalman smoother over slices of a scan",
                      false),
-      plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true),
+      with_several_lidars(
+          plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true)),
       looped<Kiss>("kiss_icp+loop", "KISS-ICP with our loop closure around it", false),
       looped<KissHead>("kiss_icp_head+loop", "KISS-ICP of 2025 with our loop closure around it",
                        false),
       looped<FastLio>("fast_lio2+loop", "FAST-LIO2 with our loop closure around it", true),
       looped<ArenaLo>("arena_lo+loop", "arena_lo with our loop closure around it", false),
-      looped<ArenaLio>("arena_lio+loop", "arena_lio with our loop closure around it", true),
+      with_several_lidars(
+          looped<ArenaLio>("arena_lio+loop", "arena_lio with our loop closure around it", true)),
   };
 }
 
@@ -369,6 +376,15 @@ OdometryRequest with_default_preset(OdometryRequest request) {
 }
 
 void check_algorithm(const OdometryRequest& request) { chosen_algorithm(request); }
+
+void check_takes_several_lidars(const std::string& algorithm) {
+  if (chosen_algorithm({.algorithm = algorithm}).info.takes_several_lidars) return;
+  std::vector<std::string> names;
+  for (const AlgorithmInfo& info : list_algorithms())
+    if (info.takes_several_lidars) names.push_back(info.name);
+  throw InputError("also", algorithm + " takes the scans of one LiDAR alone",
+                   "leave it out, or use one of " + listed(names));
+}
 
 int parts_of(const OdometryRequest& request) { return chosen_algorithm(request).parts(request); }
 

@@ -25,6 +25,7 @@ struct AlgorithmInfo {
   std::string summary;
   std::vector<std::string> presets;  ///< the default first; our own methods have none
   bool needs_imu = false;
+  bool takes_several_lidars = false;  ///< its scans may have the points of several
 };
 
 /// All algorithms, from an explicit table.
@@ -41,6 +42,9 @@ OdometryRequest with_default_preset(OdometryRequest request);
 /// Throws InputError for an unknown algorithm or preset, naming the nearest or, for a former
 /// preset, its successor.
 void check_algorithm(const OdometryRequest& request);
+
+/// Throws InputError for an algorithm whose scans are those of one LiDAR alone.
+void check_takes_several_lidars(const std::string& algorithm);
 
 /// The complete configuration that the request gives for a LiDAR; without one, for a LiDAR of which
 /// nothing is known. Throws InputError as check_algorithm(), and for a bad configuration.

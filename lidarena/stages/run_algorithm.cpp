@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/stages/run_algorithm.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lidarena/base/machine.hpp"
@@ -9,6 +10,7 @@
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/evaluation/map/return_store.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
+#include "lidarena/stages/merge_lidars.hpp"
 #include "lidarena/stages/recorder.hpp"
 #include "lidarena/stages/simulate_dataset.hpp"
 #include "lidarena/stages/split_sweeps.hpp"
@@ -33,6 +35,31 @@ std::string chosen_lidar(const dataset::Dataset& dataset, const std::string& req
   const std::string nearest = nearest_word(requested, ids);
   throw InputError(dataset.path.string(), "has no LiDAR named '" + requested + "'",
                    nearest.empty() ? "it has: " + list : "did you mean '" + nearest + "'?");
+}
+
+/// The dataset with all LiDARs that the request names.
+dataset::Dataset opened(const RunRequest& request, const Parallel& parallel) {
+  dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  if (request.also.empty()) return dataset;
+  const std::optional<std::size_t> scans = dataset.scan_count;
+  dataset::ReadOptions read = request.read;
+  read.sensor.clear();
+  dataset = open_any_dataset(request.dataset, read, parallel);
+  dataset.scan_count = scans;
+  return dataset;
+}
+
+/// The LiDARs beside `lidar_id` that the request names.
+std::vector<LidarInfo> further_lidars(const dataset::Dataset& dataset, const RunRequest& request,
+                                      const std::string& lidar_id) {
+  std::vector<LidarInfo> others;
+  for (const std::string& name : request.also) {
+    const std::string id = chosen_lidar(dataset, dataset::id_of_topic(name));
+    if (id == lidar_id || std::ranges::find(others, id, &LidarInfo::id) != others.end())
+      throw InputError("--also " + name, "names a LiDAR that is used already", "leave it out");
+    others.push_back(*dataset.rig.find_lidar(id));
+  }
+  return others;
 }
 
 /// An IMU that cannot be used is an error of the methods that need one, and of no others.
@@ -117,7 +144,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
                                    const Parallel& parallel, LogSink& log) {
   const odometry::OdometryRequest chosen = odometry::with_default_preset(request.odometry);
   const int parts = request.parts > 0 ? request.parts : odometry::parts_of(chosen);
-  dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  if (!request.also.empty()) odometry::check_takes_several_lidars(chosen.algorithm);
+  dataset::Dataset dataset = opened(request, parallel);
   dataset::tell_opening(dataset, log);
   refuse_faulty_imu(dataset, chosen);
   dataset::read_whole_part(dataset);
@@ -141,6 +169,9 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   evaluation::ReturnStore returns(out, lidar_id,
                                   evaluation::scored_returns(dataset.scan_count.value_or(0)));
   if (request.maps) dataset.events = returns.keep_from(std::move(dataset.events));
+  const std::vector<LidarInfo> others = further_lidars(dataset, request, lidar_id);
+  if (!others.empty())
+    dataset.events = std::make_unique<MergeLidars>(std::move(dataset.events), lidar, others);
   if (parts > 1)
     dataset.events = std::make_unique<SplitSweeps>(std::move(dataset.events), lidar_id, parts);
   odometry::RunSummary summary =
@@ -159,6 +190,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
                                manifest_of(summary, lidar, request.dataset, out, parallel));
   files.manifest.paced = request.paced;
   files.manifest.parts = parts;
+  for (const LidarInfo& other : others) files.manifest.also.push_back(other.id);
   if (!request.maps) files.manifest.own_map = dataset::OwnMap::kNone;
   dataset::write_run(out, files);
   return summary;

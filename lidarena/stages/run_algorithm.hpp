@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
@@ -17,10 +18,11 @@ namespace lidarena::stages {
 struct RunRequest {
   odometry::OdometryRequest odometry;
   std::filesystem::path dataset;
-  dataset::ReadOptions read;  ///< `read.sensor` names the LiDAR if the dataset has several
-  bool paced = false;         ///< drop scans when the algorithm is late, as on a live robot
-  int parts = 0;              ///< of each sweep, see SplitSweeps; 0: as the preset has it
-  bool maps = true;           ///< write map.ply and reprojected.ply
+  dataset::ReadOptions read;      ///< `read.sensor` names the LiDAR if the dataset has several
+  std::vector<std::string> also;  ///< further LiDARs whose points are added to its scans
+  bool paced = false;             ///< drop scans when the algorithm is late, as on a live robot
+  int parts = 0;                  ///< of each sweep, see SplitSweeps; 0: as the preset has it
+  bool maps = true;               ///< write map.ply and reprojected.ply
 };
 
 /// The part of a run's manifest that does not depend on how the run was made: status, counts, the

@@ -22,6 +22,7 @@ std::vector<Scan> split(const Scan& sweep, int parts) {
   for (Scan& scan : scans) {
     const std::int32_t start = std::ranges::min(scan.points, {}, &Point::dt_ns).dt_ns;
     scan.stamp = sweep.stamp + Time{start};
+    scan.origins = sweep.origins;
     for (Point& point : scan.points) point.dt_ns -= start;
   }
   return scans;

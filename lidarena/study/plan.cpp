@@ -164,8 +164,10 @@ StudyPlan make_plan(StudySpec spec, const stages::ConfigFolder& configs, const P
 std::vector<std::string> sensors_of(const StudyPlan& plan, const PlanUnit& unit) {
   std::vector<std::string> sensors = plan.spec.sensors;
   std::erase_if(sensors, [&](const std::string& sensor) {
-    return std::ranges::none_of(
-        unit.cells, [&](std::size_t cell) { return plan.cells[cell].sensor == sensor; });
+    return std::ranges::none_of(unit.cells, [&](std::size_t index) {
+      const PlannedRun& cell = plan.cells[index];
+      return cell.sensor == sensor || std::ranges::find(cell.also, sensor) != cell.also.end();
+    });
   });
   return sensors;
 }

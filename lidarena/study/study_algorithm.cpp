@@ -45,6 +45,7 @@ std::vector<StudyAlgorithm> split_by_values(const StudyAlgorithm& method) {
 void check(const StudyAlgorithm& method) {
   odometry::OdometryRequest request = parse_algorithm(method.name);
   odometry::check_algorithm(request);
+  if (!method.also.empty()) odometry::check_takes_several_lidars(request.algorithm);
   for (const std::string& assignment : assignments_of(method.set)) {
     request.overrides = {assignment};
     odometry::configuration_of(request);
@@ -85,7 +86,7 @@ std::vector<StudyAlgorithm> with_single_values(const std::vector<StudyAlgorithm>
   std::vector<StudyAlgorithm> methods;
   for (const StudyAlgorithm& algorithm : algorithms) {
     if (std::ranges::find(outside, algorithm.name) != outside.end()) {
-      if (!algorithm.set.empty() || algorithm.parts > 1)
+      if (!algorithm.set.empty() || algorithm.parts > 1 || !algorithm.also.empty())
         throw InputError("study", "gives settings to the external program " + algorithm.name,
                          "write them into its command line");
       methods.push_back(algorithm);

@@ -15,13 +15,16 @@ struct StudyAlgorithm {
   Json set = Json::object();
   int parts = 0;
   std::vector<std::string> sensors;
+  std::vector<std::string> also;
 
   StudyAlgorithm() = default;
   StudyAlgorithm(std::string text) : name(std::move(text)) {}
   StudyAlgorithm(const char* text) : name(text) {}
 
   /// Whether it is a name alone.
-  bool is_plain() const { return as.empty() && set.empty() && parts == 0 && sensors.empty(); }
+  bool is_plain() const {
+    return as.empty() && set.empty() && parts == 0 && sensors.empty() && also.empty();
+  }
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -37,6 +40,8 @@ struct StudyAlgorithm {
       "sensors of the study with which it is flown; none = all. Settings that differ from sensor "
       "to "
       "sensor are two such methods with one name (as)");
+    v("also", self.also, "",
+      "further sensors of the study, whose points are added to the scans, as run --also");
   }
 
   static StudyAlgorithm from(const ConfigNode& node);

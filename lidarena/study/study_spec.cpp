@@ -53,6 +53,11 @@ PlannedRun with_method(const StudySpec& spec, PlannedRun cell, const StudyAlgori
   cell.as = method.as;
   cell.settings = method.set;
   cell.parts = method.parts;
+  for (const std::string& name : method.also)
+    cell.also.push_back(*std::ranges::find(spec.sensors, name, stem));
+  if (!cell.also.empty() && !cell.recording.empty())
+    throw InputError("study", "adds sensors to those of a recording by also of " + method.name,
+                     "fly it in scenes alone");
   if (cell.parts == 0) cell.parts = external ? 1 : odometry::parts_of(request);
   return cell;
 }
@@ -96,11 +101,14 @@ bool is_flown(const StudyAlgorithm& method, const std::string& sensor) {
 }
 
 void check_sensors_of(const StudyAlgorithm& method, const std::vector<std::string>& sensors) {
-  for (const std::string& name : method.sensors) {
-    if (std::ranges::find(sensors, name, stem) != sensors.end()) continue;
-    throw InputError(
-        "study", "flies " + method.name + " with the sensor '" + name + "', which it does not name",
-        "add it to sensors, or remove it there");
+  for (const auto* named : {&method.sensors, &method.also}) {
+    for (const std::string& name : *named) {
+      if (std::ranges::find(sensors, name, stem) != sensors.end()) continue;
+      throw InputError(
+          "study",
+          "flies " + method.name + " with the sensor '" + name + "', which it does not name",
+          "add it to sensors, or remove it there");
+    }
   }
 }
 

@@ -149,6 +149,7 @@ struct PlannedRun {
   std::string as;                  ///< name of the method in the results; empty: algorithm
   Json settings = Json::object();  ///< of the method, over its preset
   int parts = 1;                   ///< scans in which each sweep is handed over
+  std::vector<std::string> also;   ///< sensors whose points are added to the scans
   std::vector<std::string> set;    ///< "KIND.key=value" of the flight, over its files
   std::string variation;           ///< what differs from the base, in words; empty: nothing
   Json varied = Json::object();    ///< each key that the study varies, with its value here
@@ -175,6 +176,7 @@ struct PlannedRun {
     v("as", self.as, "", "");
     v("settings", self.settings, "", "");
     v("parts", self.parts, "", "");
+    v("also", self.also, "", "");
     v("set", self.set, "", "");
     v("variation", self.variation, "", "");
     v("varied", self.varied, "", "");

@@ -159,6 +159,7 @@ Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::pat
     named[file] = fs::path(named[file].get<std::string>()).filename().string();
   // what the study calls its settings, which are in `set` and `settings`
   for (const char* title : {"variation", "varied", "differs"}) named.erase(title);
+  if (cell.also.empty()) named.erase("also");  // keys are those of versions without it
   step.key = {{"flight", unit.flight}, {"code", code_.of_method(cell.algorithm)}, {"cell", named}};
   const stages::ExternalProgram* external = find_external(plan_.spec, cell.algorithm);
   if (external != nullptr) step.key["external"] = to_json(*external);
@@ -173,6 +174,8 @@ Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::pat
       const fs::path dataset = root_ / "datasets" / cell.dataset;
       call.insert(call.end(),
                   {dataset.string(), "--sensor", lidar_id_of(dataset, sensors, cell.sensor)});
+      for (const std::string& sensor : cell.also)
+        call.insert(call.end(), {"--also", lidar_id_of(dataset, sensors, sensor)});
     }
     call.insert(call.end(), {"--out", folder.string()});
     if (external != nullptr) {

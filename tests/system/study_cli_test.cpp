@@ -208,6 +208,45 @@ TEST_F(Cli, ARunInPartsOfItsSweepsAndScoredAgainstAGivenTruth) {
   EXPECT_EQ(call("run theirs data --external none.yaml --parts 2 --out x").exit_code, 2);
 }
 
+TEST_F(Cli, TwoLidarsMakeOneScan) {
+  write("room.obj", room_obj());
+  const std::string scene =
+      "scenes: [{world: room.obj, flight: " + write("flight.yaml", kRoomFlight) +
+      ", seconds: 2}]\nsensors: [livox_mid360, livox_mid360_down]\nalgorithms:\n";
+  write("study.yaml", scene +
+                          "  - {name: arena_lio, sensors: [livox_mid360]}\n"
+                          "  - {name: arena_lio, as: two, sensors: [livox_mid360], also: "
+                          "[livox_mid360_down]}\n");
+  ASSERT_EQ(call("study study.yaml --out study").exit_code, 0);
+  std::vector<double> bytes;  // of the registered scan
+  for (const std::string name : {"arena_lio", "two"}) {
+    const std::string run = "study/runs/room-flight-s1-livox_mid360-" + name;
+    const auto manifest = nlohmann::json::parse(content(path(run + "/manifest.json")));
+    EXPECT_EQ(manifest.at("also").size(), name == "two" ? 1U : 0U);
+    EXPECT_EQ(manifest.at("summary").at("scans"), 20);
+    const auto scored = nlohmann::json::parse(call("evaluate " + run + " --json").out);
+    EXPECT_LT(scored["final"]["ate"]["first_pose"]["translation"]["rmse_m"], 0.01) << name;
+    std::istringstream resources(content(path(run + "/resources.csv")));
+    std::string row, cell;
+    for (int i = 0; i < 2; ++i) std::getline(resources, row);  // the head, the first scan
+    std::istringstream cells(row);
+    for (int i = 0; i < 7; ++i) std::getline(cells, cell, ',');
+    bytes.push_back(std::stod(cell));
+  }
+  EXPECT_EQ(bytes[0], 20'000 * 12.0);
+  EXPECT_EQ(bytes[1], 2 * bytes[0]);
+  const std::string refused = "  - {name: kiss_icp, also: [livox_mid360_down]}\n";
+  write("refused.yaml", scene + refused);
+  EXPECT_THAT(refusal("study refused.yaml --out x"), HasSubstr("one LiDAR alone"));
+  write("unnamed.yaml", scene + "  - {name: arena_lio, also: [ouster_os0_128]}\n");
+  EXPECT_THAT(refusal("study unnamed.yaml --out x"), HasSubstr("which it does not name"));
+  const std::string data = "study/datasets/room-flight-s1";
+  EXPECT_THAT(refusal("run arena_lio " + data + " --sensor livox_mid360 --also livox_mid360"),
+              HasSubstr("used already"));
+  EXPECT_THAT(refusal("run arena_lio " + data + " --sensor livox_mid360 --also down"),
+              HasSubstr("no LiDAR named 'down'"));
+}
+
 TEST_F(Cli, ACheckSaysWhatItFoundOnAPageToo) {
   ASSERT_EQ(call("simulate --world house --flight house_aggressive --seconds 8 --sensor "
                  "livox_mid360 --set imu.gyro_range=3 --hits off --out clipped")

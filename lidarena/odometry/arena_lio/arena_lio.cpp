@@ -37,16 +37,32 @@ estimation::ImuNoise noise_for(const ImuInfo& imu, const Config& config) {
   return noise;
 }
 
-/// The points that are finite and farther than `min_range` (m).
+/// The points that are finite and farther than `min_range` (m) from their LiDAR.
 Scan usable_points(const Scan& scan, double min_range) {
-  Scan usable{.stamp = scan.stamp, .points = {}, .timed = scan.timed};
+  Scan usable{.stamp = scan.stamp, .points = {}, .timed = scan.timed, .origins = scan.origins};
   const auto nearest = static_cast<float>(min_range * min_range);
   usable.points.reserve(scan.points.size());
   for (const Point& point : scan.points) {
-    const float squared = point.position.squaredNorm();
+    const float squared = (point.position - origin_of(scan, point)).squaredNorm();
     if (std::isfinite(squared) && squared > nearest) usable.points.push_back(point);
   }
   return usable;
+}
+
+/// What one LiDAR has seen: points (m), and from where. In the frame of the scan.
+struct Seen {
+  Eigen::Vector3f from;
+  std::vector<Eigen::Vector3f> points;
+};
+
+/// The positions of the scan's points by their LiDARs.
+std::vector<Seen> by_lidar(const Scan& scan, std::vector<Eigen::Vector3f> positions) {
+  if (scan.origins.size() < 2) return {{Eigen::Vector3f::Zero(), std::move(positions)}};
+  std::vector<Seen> all;
+  for (const Eigen::Vector3f& origin : scan.origins) all.push_back({origin, {}});
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    all[scan.points[i].lidar].points.push_back(positions[i]);
+  return all;
 }
 
 /// Standard deviation (m) of the position in its least certain direction.
@@ -112,7 +128,7 @@ ScanResult ArenaLio::track(const Scan& scan) {
   std::vector<StampedPose> revised = smooths ? revise(filter_) : std::vector<StampedPose>{};
   last_ = {scan.stamp, end, filter_.track};
   const std::vector<Eigen::Vector3f> points = deskewed(usable, filter_, parallel_);
-  if (!tracking_.contradicts()) world_ = grown(std::move(world_), filter_, points);
+  if (!tracking_.contradicts()) world_ = grown(std::move(world_), filter_, usable, points);
 
   const Pose map_from_lidar = filter_.estimate.state.world_from_lidar();
   registered_scan_ = transformed(world_.world_from_map * map_from_lidar, points);
@@ -203,10 +219,15 @@ Filter ArenaLio::predict(Filter filter,
 
 ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
                                 const map::LocalPlanes& map) const {
-  const std::vector<Eigen::Vector3f> reduced = map::evenly(
-      map::voxel_means(deskewed(usable, predicted, parallel_), config_.scan_voxel_size_m, kGrid),
-      config_.max_scan_points);
-  PlaneResiduals residuals(reduced, map, position_sigma(predicted.estimate),
+  std::vector<Eigen::Vector3f> reduced, seen_from;
+  for (const Seen& seen : by_lidar(usable, deskewed(usable, predicted, parallel_))) {
+    const auto means = map::voxel_means(seen.points, config_.scan_voxel_size_m, kGrid);
+    reduced.insert(reduced.end(), means.begin(), means.end());
+    seen_from.resize(reduced.size(), seen.from);
+  }
+  reduced = map::evenly(std::move(reduced), config_.max_scan_points);
+  seen_from = map::evenly(std::move(seen_from), config_.max_scan_points);
+  PlaneResiduals residuals(reduced, seen_from, map, position_sigma(predicted.estimate),
                            config_.estimate_extrinsics && predicted.has_moved, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       predicted.estimate, std::ref(residuals),
@@ -285,18 +306,20 @@ std::vector<StampedPose> ArenaLio::revise(const Filter& filter) {
   return revised;
 }
 
-ArenaLio::World ArenaLio::with_points(World world, const Filter& filter,
-                                      const std::vector<Eigen::Vector3f>& points) {
+ArenaLio::World ArenaLio::with_points(World world, const Filter& filter, const Scan& scan,
+                                      std::vector<Eigen::Vector3f> positions) {
   const Pose map_from_lidar = filter.estimate.state.world_from_lidar();
-  const Eigen::Vector3f sensor = map_from_lidar.translation().cast<float>();
-  world.map.insert(transformed(map_from_lidar, points), sensor);
+  for (const Seen& seen : by_lidar(scan, std::move(positions))) {
+    const Eigen::Vector3d from = map_from_lidar * seen.from.cast<double>();
+    world.map.insert(transformed(map_from_lidar, seen.points), from.cast<float>());
+  }
   return world;
 }
 
-ArenaLio::World ArenaLio::grown(World world, const Filter& filter,
-                                const std::vector<Eigen::Vector3f>& points) {
+ArenaLio::World ArenaLio::grown(World world, const Filter& filter, const Scan& scan,
+                                const std::vector<Eigen::Vector3f>& positions) {
   if (filter.still.scans() > kStandingScansMapped) return world;
-  world = with_points(std::move(world), filter, points);
+  world = with_points(std::move(world), filter, scan, positions);
   world.map.follow(filter.estimate.state.world_from_lidar().translation().cast<float>());
   return world;
 }
@@ -314,7 +337,7 @@ ArenaLio::Replay ArenaLio::replay(const Opening& opening, Filter filter, World w
       predicted.estimate = match(scan.usable, predicted, again.world.map).update.estimate;
       again.filter = bent(std::move(predicted), scan.end);
     }
-    again.world = with_points(std::move(again.world), again.filter,
+    again.world = with_points(std::move(again.world), again.filter, scan.usable,
                               deskewed(scan.usable, again.filter, parallel_));
     again.poses.push_back({scan.end, world_from_body(again.world, again.filter)});
   }

@@ -137,11 +137,13 @@ class ArenaLio : public Odometry {
   Filter correct(Registration found, const ScanImu& imu, bool tracked) const;
   /// The poses of the last scan, given what the filter has registered since; revises it.
   std::vector<StampedPose> revise(const Filter& filter);
-  /// The world with the points (m, LiDAR's frame at the filter's estimate).
-  static World with_points(World world, const Filter& filter,
-                           const std::vector<Eigen::Vector3f>& points);
+  /// The world with the scan's points at these positions (m, LiDAR's frame at the filter's
+  /// estimate), in the order of the points.
+  static World with_points(World world, const Filter& filter, const Scan& scan,
+                           std::vector<Eigen::Vector3f> positions);
   /// The same, unless the sensor has long stood still; without what is far.
-  static World grown(World world, const Filter& filter, const std::vector<Eigen::Vector3f>& points);
+  static World grown(World world, const Filter& filter, const Scan& scan,
+                     const std::vector<Eigen::Vector3f>& positions);
   /// The first scan of an opening has no map to be matched with; the others have those before.
   Replay replay(const Opening& opening, Filter filter, World world) const;
   /// The estimate at the end of the opening's first scan that agrees best with the latest scan.

@@ -45,10 +45,12 @@ std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
 
 }  // namespace
 
-PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::LocalPlanes& map,
-                               double prior_sigma, bool with_extrinsics, const Config& config,
-                               const Parallel& parallel)
+PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points,
+                               std::span<const Eigen::Vector3f> seen_from,
+                               const map::LocalPlanes& map, double prior_sigma,
+                               bool with_extrinsics, const Config& config, const Parallel& parallel)
     : points_(points),
+      seen_from_(seen_from),
       map_(map),
       config_(config),
       parallel_(parallel),
@@ -63,15 +65,17 @@ void PlaneResiduals::find_planes(const Pose& world_from_lidar, bool with_coarse)
   const bool uncertain = scale_ > config_.kernel_scale_m;
   const map::PlaneMap& first = uncertain ? map_.coarse() : map_.fine();
   const map::PlaneMap& second = uncertain ? map_.fine() : map_.coarse();
-  const Eigen::Vector3f sensor = world_from_lidar.translation().cast<float>();
+  const auto in_map = [&](const Eigen::Vector3f& point) -> Eigen::Vector3f {
+    return (world_from_lidar * point.cast<double>()).cast<float>();
+  };
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
-    in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
-    planes_[i] = first.plane_at(in_map_[i], sensor);
+    in_map_[i] = in_map(points_[i]);
+    planes_[i] = first.plane_at(in_map_[i], in_map(seen_from_[i]));
   });
   const double needed = kMinFineShare * static_cast<double>(points_.size());
   if (!uncertain && !with_coarse && weakest_direction(planes_) >= needed) return;
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
-    if (planes_[i] == nullptr) planes_[i] = second.plane_at(in_map_[i], sensor);
+    if (planes_[i] == nullptr) planes_[i] = second.plane_at(in_map_[i], in_map(seen_from_[i]));
   });
 }
 

@@ -43,9 +43,11 @@ struct Agreement {
 /// kernel's scale.
 class PlaneResiduals {
  public:
+  /// `seen_from`: of each point, the place of its LiDAR (m, in the frame of the points);
   /// `prior_sigma`: standard deviation (m) of the position before the update; `with_extrinsics`:
   /// whether the points also move the LiDAR on the IMU.
-  PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::LocalPlanes& map,
+  PlaneResiduals(std::span<const Eigen::Vector3f> points,
+                 std::span<const Eigen::Vector3f> seen_from, const map::LocalPlanes& map,
                  double prior_sigma, bool with_extrinsics, const Config& config,
                  const Parallel& parallel);
 
@@ -62,7 +64,7 @@ class PlaneResiduals {
  private:
   void find_planes(const Pose& world_from_lidar, bool with_coarse = false);
 
-  std::span<const Eigen::Vector3f> points_;
+  std::span<const Eigen::Vector3f> points_, seen_from_;
   const map::LocalPlanes& map_;
   const Config& config_;
   const Parallel& parallel_;

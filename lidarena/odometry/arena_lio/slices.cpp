@@ -39,7 +39,8 @@ std::vector<Slice> sliced(const Scan& scan, Time end,
     slices.front() = {scan, intervals};
     return slices;
   }
-  for (Slice& slice : slices) slice.points = {.stamp = scan.stamp, .points = {}, .timed = true};
+  for (Slice& slice : slices)
+    slice.points = {.stamp = scan.stamp, .points = {}, .timed = true, .origins = scan.origins};
   const Time duration = end - scan.stamp;
   const auto begin_of = [&](int slice) {
     if (slice == 0) return Time::min();

@@ -28,6 +28,9 @@ Points floor_points(double noise = 0.0, float z = kFloor) {
   return points;
 }
 
+/// The LiDAR's place for each of the points.
+Points at_zero(const Points& points) { return Points(points.size(), Eigen::Vector3f::Zero()); }
+
 map::LocalPlanes map_of(const Points& points) {
   map::LocalPlanes map({});
   map.insert(points, Eigen::Vector3f::Zero());
@@ -40,7 +43,8 @@ double weight(const map::LocalPlanes& map, const Eigen::Vector3f& point, double 
   const Points points{point};
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(points, map, prior_sigma, true, config, parallel);
+  const Points seen_from = at_zero(points);
+  PlaneResiduals residuals(points, seen_from, map, prior_sigma, true, config, parallel);
   estimation::NormalEquations<estimation::kPointDof> sums;
   for (int i = 0; i < evaluation; ++i) sums = residuals({}, true);
   return sums.hessian(2, 2);
@@ -51,7 +55,8 @@ TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
   const Points points{{0.4F, 0.7F, kFloor + 0.01F}};
   const Config config;
   const Parallel parallel(1);
-  const auto sums = PlaneResiduals(points, map, 0.0, true, config, parallel)({}, true);
+  const Points seen_from = at_zero(points);
+  const auto sums = PlaneResiduals(points, seen_from, map, 0.0, true, config, parallel)({}, true);
   ASSERT_EQ(sums.count, 1U);
   const double kernel = 1.0 / std::pow(1.0 + 0.01 * 0.01 / (0.05 * 0.05), 2);
   EXPECT_NEAR(sums.hessian(2, 2), kernel, 1e-3);
@@ -84,7 +89,8 @@ TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
   const map::LocalPlanes map = map_of(sparse);
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(sparse, map, 0.0, true, config, parallel);
+  const Points seen_from = at_zero(sparse);
+  PlaneResiduals residuals(sparse, seen_from, map, 0.0, true, config, parallel);
   EXPECT_GT(residuals({}, true).count, 5U);
   const map::LocalPlanes dense = map_of(floor_points());
   EXPECT_EQ(weight(dense, {0.4F, 0.7F, kFloor + 3.0F}), 0.0) << "3 m above";
@@ -96,17 +102,19 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
       {0.4F, 0.7F, kFloor + 0.01F}, {0.4F, 0.6F, kFloor - 0.02F}, {0.3F, 0.6F, 9.0F}};
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(points, map, 0.0, true, config, parallel);
+  const Points seen_from = at_zero(points);
+  PlaneResiduals residuals(points, seen_from, map, 0.0, true, config, parallel);
   const auto here = residuals.agreement({});
   EXPECT_EQ(here.near_planes, 2U);
   EXPECT_EQ(here.on_planes, 2U);
   EXPECT_EQ(here.share(), 1.0) << "of those near planes";
-  PlaneResiduals uncertain(points, map, 1.0, true, config, parallel);
+  const Points seen_from_uncertain = at_zero(points);
+  PlaneResiduals uncertain(points, seen_from_uncertain, map, 1.0, true, config, parallel);
   EXPECT_NEAR(uncertain.agreement({}).share(), 2.0 / 3.0, 1e-12) << "of all";
   estimation::InertialState moved;
   moved.position().z() = 0.045;
   EXPECT_EQ(residuals.agreement(moved).on_planes, 1U) << "one is now 5.5 cm above";
-  EXPECT_EQ(PlaneResiduals({}, map, 0.0, true, config, parallel).agreement({}).share(), 0.0);
+  EXPECT_EQ(PlaneResiduals({}, {}, map, 0.0, true, config, parallel).agreement({}).share(), 0.0);
 }
 
 TEST(ArenaLioPlanes, AWallHasTwoSides) {
@@ -120,10 +128,20 @@ TEST(ArenaLioPlanes, AWallHasTwoSides) {
   const Points points{{0.4F, 0.7F, kFloor - 0.05F - kBelow}};
   const Config config;
   const Parallel parallel(1);
-  const auto sums = PlaneResiduals(points, map, 0.0, true, config, parallel)(below, true);
+  const Points seen_from = at_zero(points);
+  const auto sums =
+      PlaneResiduals(points, seen_from, map, 0.0, true, config, parallel)(below, true);
   EXPECT_EQ(sums.count, 1U);
   EXPECT_NEAR(sums.gradient[2], 0.0, 1e-3);
   EXPECT_NEAR(sums.hessian(2, 2), 1.0, 1e-3);
+
+  // Seen by a second LiDAR, which is below while the first one is above.
+  const Points lower{{0.4F, 0.7F, kFloor - 0.05F}};
+  const Points lower_lidar{{0.0F, 0.0F, kBelow}};
+  const auto by_second =
+      PlaneResiduals(lower, lower_lidar, map, 0.0, true, config, parallel)({}, true);
+  EXPECT_EQ(by_second.count, 1U);
+  EXPECT_NEAR(by_second.gradient[2], 0.0, 1e-3);
 }
 
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
@@ -132,7 +150,9 @@ TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
   const Parallel parallel(1);
   const auto sums = [&](bool extrinsics) {
     const Config config;
-    return PlaneResiduals(points, map, 0.0, extrinsics, config, parallel)({}, true).hessian;
+    const Points seen_from = at_zero(points);
+    return PlaneResiduals(points, seen_from, map, 0.0, extrinsics, config, parallel)({}, true)
+        .hessian;
   };
   EXPECT_EQ(sums(false).rightCols<6>().norm(), 0.0);
   EXPECT_GT(sums(true).diagonal().tail<6>().maxCoeff(), 0.1);
