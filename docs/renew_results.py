@@ -470,7 +470,7 @@ def stored_report(study):
 def check():
     faults = [fault for file in sorted(DATA.glob("*.csv")) for fault in faults_of(file.stem)]
     faults += [f"{file.stem}: {fault}" for file in sorted(NEEDS.glob("*.json"))
-               for fault in report_tables.wrong_medians(stored_report(file.stem), runs_of(file.stem), judged)]
+               for fault in report_tables.faults_of(stored_report(file.stem), runs_of(file.stem), judged)]
     for file in PAGES:
         page = file.read_text()
         if found := re.search(r"\S\n *<!-- (=|ratio|median|runs) [^\n]*", page):
