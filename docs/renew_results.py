@@ -55,6 +55,7 @@ PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
+         "livox_mid360_down": "Mid-360 below", "arena_lio_two": "`arena_lio` with both",
          "livox_mid360_harsh": "Mid-360", "ouster_os0_128_harsh": "OS0-128",
          "mid360_recorded_imu": "Mid-360", "os0_recorded_imu": "OS0-128",
          "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall", "dev_office": "office",

@@ -11,6 +11,10 @@ import re
 import statistics
 
 
+CELLS = {"drift": "rpe_1m_at_poses_translation_cm", "live-drift": "live_rpe_1m_at_poses_translation_cm",
+         "map": "own_map_rmse_cm"}  # tables with a row for each sensor
+
+
 def tables_of(columns):
     """The ids that columns name."""
     return sorted({table for column in columns for table in column.partition("=")[0].split("/")})
@@ -19,21 +23,21 @@ def tables_of(columns):
 def cell_text(cell, live=None):
     """With its range, how many of how many runs kept track, if one did not, and the live figure."""
     spread = re.sub(r"(?:, |^)(\d+) of \1$", "", cell.get("spread", ""))
-    text = cell["text"] or "-"
+    text = cell.get("text") or "-"
     if cell.get("bold"):
         text = f"**{text}**"
-    if live and live["text"] and text != "lost":
+    if live and live.get("text") and text != "lost":
         text += f" / {live['text']} live"
     return f"{text} ({spread})" if spread else text
 
 
 def side_by_side(stored, columns, names):
-    """Markdown with a row for each variation; `names`: of methods in words."""
+    """Markdown with a row for each variation or sensor; `names`: of both and of methods, in words."""
     head, rows = [""], {}
     for tables, _, title in (column.partition("=") for column in columns):
         final, _, live = tables.partition("/")
         live_rows = {row[0]["text"]: row for row in stored[live]["rows"]} if live else {}
-        methods = [method.partition(", ")[2].removesuffix(" (tuned)") for method in stored[final]["head"][1:]]
+        methods = [re.sub(r"^[^,]+, | \(tuned\)$", "", method) for method in stored[final]["head"][1:]]
         for i, method in enumerate(methods, 1):
             label = title.replace("_", " ")
             head.append(f"{label}, {names.get(method, f'`{method}`')}" if len(methods) > 1 else label)
@@ -41,7 +45,7 @@ def side_by_side(stored, columns, names):
                 live_cell = live_rows[row[0]["text"]][i] if live else None
                 rows.setdefault(row[0]["text"], {})[head[-1]] = cell_text(row[i], live_cell)
     lines = ["| " + " | ".join(head) + " |", "|---|" + "---|" * (len(head) - 1)]
-    lines += [f"| {name} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
+    lines += [f"| {names.get(name, name)} | " + " | ".join(cells.get(title, "-") for title in head[1:]) + " |" for name, cells in rows.items()]
     return "\n".join(lines)
 
 
@@ -49,7 +53,7 @@ def median_of(runs, column, judged, found, title, variation):
     """Median of the runs of a cell, None without any. `found`: a match with the world as second group."""
     sensor, method, preset = re.fullmatch(r"([^,]+), (\S+)(?: \((\w+)\))?", title).groups("")
     values = [judged(run, column) for run in runs
-              if (run["world"], run["sensor"], run["algorithm"], run["preset"], run["variation"] or "base")
+              if (run["world"], run["sensor"], run["algorithm"], run["preset"], run.get("variation") or "base")
               == (found[2], sensor, method, preset, variation)]
     values = [value for value in values if value is not None]
     return statistics.median(values) if values else None
@@ -64,16 +68,18 @@ def column_of(found, runs):
 def wrong_medians(stored, runs, judged):
     """Cells of the sweeps that are not the median of the runs. `judged(run, column)`: infinite for a lost run."""
     for name, table in stored.items():
-        if not (found := re.fullmatch(r"sweep-(\w+)-(\w+)", name)):
+        if not (found := re.fullmatch(r"sweep-(\w+)-(\w+)", name) or re.fullmatch(r"([a-z-]+)-(\w+)-", name)):
             continue
-        column = column_of(found, runs)
+        column = CELLS.get(found[1]) or column_of(found, runs)
         for label, *cells in table["rows"]:
             for title, cell in zip(table["head"][1:], cells):
-                median = median_of(runs, column, judged, found, title, label["text"])
+                of_sensors = found[1] in CELLS
+                column_title, variation = (f"{label['text']}, {title}", "base") if of_sensors else (title, label["text"])
+                median = median_of(runs, column, judged, found, column_title, variation)
                 median = math.nan if median is None else median
-                told = math.inf if cell["text"] == "lost" or cell["text"].startswith("ended") else cell.get("value", math.nan)
+                told = math.inf if cell.get("text", "") == "lost" or cell.get("text", "").startswith("ended") else cell.get("value", math.nan)
                 if told != median and not math.isclose(told, median, rel_tol=1e-6) and not (math.isnan(told) and math.isnan(median)):
-                    yield f"{name}, {label['text']}, {title}: {cell['text']}, but the runs give {median}"
+                    yield f"{name}, {label['text']}, {title}: {cell}, but the runs give {median}"
 
 
 def shapley_values(worth, names):
