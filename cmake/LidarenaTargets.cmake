@@ -5,6 +5,10 @@ add_library(lidarena_flags INTERFACE)
 # -ffp-contract=off: every operation is rounded. GCC fuses multiplications with additions where the processor can (arm64),
 # in one loop and not in another, so that equal sums would differ.
 target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-psabi -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  # GCC's -Wconversion leaves out signs in C++
+  target_compile_options(lidarena_flags INTERFACE -Wno-sign-conversion)
+endif()
 if(LIDARENA_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 falsely warns of std::string's own header (GCC bug 105651), with precompiled headers even
   # though it is a system header
@@ -12,10 +16,12 @@ if(LIDARENA_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
                                                   -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(CMAKE_UNITY_BUILD)
-  # Of files that are compiled together GCC warns as if they were one: names of one hide those of
+  # Of files that are compiled together a compiler warns as if they were one: names of one hide those of
   # another, and the anonymous namespace of an included file may differ elsewhere.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(lidarena_flags INTERFACE -Wno-subobject-linkage -Wno-shadow -Wshadow=local)
+  else()
+    target_compile_options(lidarena_flags INTERFACE -Wno-shadow)
   endif()
 endif()
 if(LIDARENA_WARNINGS_AS_ERRORS)

@@ -164,9 +164,9 @@ void bind_base(py::module_& m) {
     try {
       if (p) std::rethrow_exception(p);
     } catch (const InputError& e) {
-      input_error(e.what());
+      PyErr_SetString(input_error.ptr(), e.what());
     } catch (const Error& e) {
-      error(e.what());
+      PyErr_SetString(error.ptr(), e.what());
     }
   });
   bind_trajectory(m);

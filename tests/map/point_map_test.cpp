@@ -113,7 +113,7 @@ TEST(PointMap, TakesSome20BytesAVoxelHoweverManyPointsFallIntoIt) {
 
 TEST(PointMap, AVoxelWithoutSizeIsRefused) {
   EXPECT_THROW(PointMap(0.0), InputError);
-  EXPECT_THROW(PointMap(std::numeric_limits<double>::quiet_NaN()), InputError);
+  EXPECT_THROW(PointMap{std::numeric_limits<double>::quiet_NaN()}, InputError);
 }
 
 TEST(VoxelFilter, IndicesNameTheFirstPointOfEachVoxel) {

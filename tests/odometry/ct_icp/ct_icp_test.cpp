@@ -57,7 +57,7 @@ TEST(CtIcp, ScansThatTurnFastAreLeftOutOfTheMapUnlessAllAreWanted) {
     CtIcp odometry(config, lidar(), Parallel(1));
     int inserted = 0;
     for (const Scan& scan : yawing(60.0))
-      inserted += odometry.register_scan(scan).detail("inserted").value() ? 1 : 0;
+      inserted += odometry.register_scan(scan).detail("inserted").value() != 0.0 ? 1 : 0;
     // 5 scans at rest, then 10 at 6 degrees each, of which the seventh is taken in any case
     EXPECT_EQ(inserted, all ? 15 : 6);
   }
