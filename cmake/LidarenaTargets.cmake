@@ -65,7 +65,9 @@ function(lidarena_module name)
   if(arg_NO_NUMERICS)
     target_compile_options(lidarena_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
-  if(LIDARENA_PRECOMPILED_HEADERS)
+  # GCC 13 and later refuse precompiled headers that were made with another -O.
+  if(LIDARENA_PRECOMPILED_HEADERS AND NOT (arg_NO_NUMERICS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
+                                           AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13))
     target_precompile_headers(lidarena_${name} REUSE_FROM lidarena_library_headers)
   endif()
 endfunction()

@@ -39,9 +39,9 @@ struct LoopedConfig {
   }
 };
 
-const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const LidarInfo& lidar) {
+const ImuInfo& imu_for(const char* algorithm, const Rig& rig, const LidarInfo& lidar) {
   if (const ImuInfo* imu = rig.imu_beside(lidar)) return *imu;
-  throw InputError("rig", "it has no IMU, but " + algorithm + " needs one",
+  throw InputError("rig", std::string("it has no IMU, but ") + algorithm + " needs one",
                    "use arena_lo, kiss_icp or ct_icp, which need none");
 }
 
