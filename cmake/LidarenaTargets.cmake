@@ -9,6 +9,10 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   # GCC's -Wconversion leaves out signs in C++
   target_compile_options(lidarena_flags INTERFACE -Wno-sign-conversion)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+  # GCC 13 and 14 warn of references that a function with a temporary argument returns, whatever they refer to
+  target_compile_options(lidarena_flags INTERFACE -Wno-dangling-reference)
+endif()
 if(LIDARENA_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 falsely warns of std::string's own header (GCC bug 105651), with precompiled headers even
   # though it is a system header
