@@ -53,8 +53,13 @@ PlannedRun with_method(const StudySpec& spec, PlannedRun cell, const StudyAlgori
   cell.as = method.as;
   cell.settings = method.set;
   cell.parts = method.parts;
-  for (const std::string& name : method.also)
-    cell.also.push_back(*std::ranges::find(spec.sensors, name, stem));
+  for (const std::string& name : method.also) {
+    const std::string& sensor = *std::ranges::find(spec.sensors, name, stem);
+    if (sensor == cell.sensor || std::ranges::find(cell.also, sensor) != cell.also.end())
+      throw InputError("study", "adds the sensor '" + name + "' twice to scans of " + method.name,
+                       "name it once in also, and leave it out of the method's sensors");
+    cell.also.push_back(sensor);
+  }
   if (!cell.also.empty() && !cell.recording.empty())
     throw InputError("study", "adds sensors to those of a recording by also of " + method.name,
                      "fly it in scenes alone");

@@ -155,8 +155,11 @@ Task Tasks::flight(const PlanUnit& unit, const stages::ConfigFolder& configs) co
 Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::path& folder) const {
   Step step{"run", {}, folder / "manifest.json", {}};
   Json named = to_json(cell);  // the content of its files is in the key of the flight
-  for (const char* file : {"world", "flight", "sensor"})
-    named[file] = fs::path(named[file].get<std::string>()).filename().string();
+  const auto filename = [](const Json& path) {
+    return fs::path(path.get<std::string>()).filename().string();
+  };
+  for (const char* file : {"world", "flight", "sensor"}) named[file] = filename(named[file]);
+  for (Json& sensor : named["also"]) sensor = filename(sensor);
   // what the study calls its settings, which are in `set` and `settings`
   for (const char* title : {"variation", "varied", "differs"}) named.erase(title);
   if (cell.also.empty()) named.erase("also");  // keys are those of versions without it

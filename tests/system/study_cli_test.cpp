@@ -238,6 +238,8 @@ TEST_F(Cli, TwoLidarsMakeOneScan) {
   const std::string refused = "  - {name: kiss_icp, also: [livox_mid360_down]}\n";
   write("refused.yaml", scene + refused);
   EXPECT_THAT(refusal("study refused.yaml --out x"), HasSubstr("one LiDAR alone"));
+  write("twice.yaml", scene + "  - {name: arena_lio, also: [livox_mid360_down]}\n");
+  EXPECT_THAT(refusal("study twice.yaml --out x"), HasSubstr("twice"));
   write("unnamed.yaml", scene + "  - {name: arena_lio, also: [ouster_os0_128]}\n");
   EXPECT_THAT(refusal("study unnamed.yaml --out x"), HasSubstr("which it does not name"));
   const std::string data = "study/datasets/room-flight-s1";
