@@ -85,7 +85,7 @@ npm_packages() {
 }
 
 npm_packages viewer "the libraries of the 3D view and the charts" \
-  "the build leaves out the 3D view, and reports have no charts"
+  "a report is tables and data then, without a page"
 if [ "${1:-run}" = test ]; then
   npm_packages tests/dataset/mcap_official "independent readers of recordings" \
     "the tests that need them will be reported as skipped"

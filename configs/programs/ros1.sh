@@ -13,8 +13,18 @@ export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1
 env --default-signal=INT roscore -p "$port" >"$output/roscore.log" 2>&1 &
 core=$!
 nodes=
-# The master is no child of roscore's process group: roscore has to end it.
-trap 'kill -INT $nodes $core 2>/dev/null || true; wait $core || true' EXIT
+# The master is no child of roscore's process group: roscore has to end it. A node that waits for the
+# bag's clock, which has stopped, may ignore SIGINT: FAST-LIO2 does.
+end_all() {
+  kill -INT $nodes $core 2>/dev/null || true
+  for _ in $(seq 25); do
+    kill -0 $nodes 2>/dev/null || break
+    sleep 0.2
+  done
+  kill -TERM $nodes 2>/dev/null || true
+  wait $core || true
+}
+trap end_all EXIT
 for _ in $(seq 150); do
   rosparam list >/dev/null 2>&1 && break
   sleep 0.2

@@ -8,6 +8,7 @@ import base64
 import csv
 import hashlib
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -136,6 +137,10 @@ def check_unknown_library(work):
 def main(build):
     if not shutil.which("patchelf"):
         print("skipped: patchelf is not installed (patchelf)")
+        sys.exit(77)
+    glibc = platform.libc_ver()[1]
+    if tuple(map(int, glibc.split("."))) > wheel.NEWEST["GLIBC"]:
+        print(f"skipped: the C library is {glibc}, newer than a wheel may ask for; it is made on Debian 12")
         sys.exit(77)
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)

@@ -83,7 +83,9 @@ TEST_F(Convert, WorldsCloudsAndTrajectories) {
   for (const char* out : {"room.ply", "room2.obj", "room.sdf"}) {
     EXPECT_EQ(converted(room, path(out)).at("triangles"), 36) << out;
   }
-  EXPECT_EQ(converted(path("room.sdf"), path("again.ply")).at("triangles"), 36);
+  if (LIDARENA_TEST_SDF) {
+    EXPECT_EQ(converted(path("room.sdf"), path("again.ply")).at("triangles"), 36);
+  }
 
   const std::string cloud =
       write("cloud.pcd",

@@ -34,7 +34,9 @@ TEST_F(Cli, AStudyIsResumedAndARunThatWasNotFlownIsARow) {
   EXPECT_EQ(counts.at("reused"), 0);
   const std::string csv = content(path("study_out") + "/results.csv");
   EXPECT_THAT(csv, AllOf(HasSubstr(",ok,"), HasSubstr(",not flown,")));
-  EXPECT_THAT(content(path("study_out") + "/report.html"), HasSubstr("A study of a test"));
+  if (LIDARENA_TEST_VIEWER) {
+    EXPECT_THAT(content(path("study_out") + "/report.html"), HasSubstr("A study of a test"));
+  }
   const Outcome second = call("study --json " + study + " --out " + path("study_out"));
   EXPECT_EQ(nlohmann::json::parse(second.out).at("reused"), 1);
   EXPECT_EQ(content(path("study_out") + "/results.csv"), csv)
@@ -257,7 +259,7 @@ TEST_F(Cli, ACheckSaysWhatItFoundOnAPageToo) {
   const Outcome check = call("check clipped --out page.html");
   EXPECT_EQ(check.exit_code, 1) << "a fault";
   EXPECT_THAT(check.out, AllOf(HasSubstr("is at 3 rad/s"), HasSubstr("remedy: ")));
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "page.html"));
+  EXPECT_EQ(std::filesystem::exists(folder_.path() / "page.html"), LIDARENA_TEST_VIEWER);
   const auto json = nlohmann::json::parse(call("check clipped --json").out);
   EXPECT_EQ(json["findings"][0]["key"], "imu_saturated");
   EXPECT_FALSE(json.contains("curves"));
