@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Writes a source file with hashes of the code that decides the results of the simulator, of each
-# method and of the scorer: cmake -DSOURCES=FOLDER -DCOMPILER=TEXT -DOUT=FILE.cpp -P HashCode.cmake
+# method and of the scorer, and with the commit of this code: cmake -DSOURCES=FOLDER -DCOMPILER=TEXT -DOUT=FILE.cpp -P HashCode.cmake
 # A hash covers the text of the part's sources and headers, without lines of comments, and COMPILER,
 # which says what else decides the code made of them.
 cmake_policy(SET CMP0057 NEW)
@@ -55,11 +55,25 @@ foreach(method IN LISTS methods)
   string(SHA256 hash "${COMPILER}\n${text_method}${text_of_${method}}")
   string(APPEND json ",\n  \"${method}\": \"${hash}\"")
 endforeach()
+
+# The commit, unless SOURCES is not the folder of that name in a clone of this project.
+set(git git -C ${SOURCES})
+execute_process(COMMAND ${git} rev-parse --show-prefix OUTPUT_VARIABLE place OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+execute_process(COMMAND ${git} log -1 --format=%h --abbrev=10 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE
+                ERROR_QUIET)
+execute_process(COMMAND ${git} diff --quiet HEAD -- . RESULT_VARIABLE changed ERROR_QUIET)
+if(NOT place STREQUAL "lidarena/" OR NOT commit)
+  set(commit unknown)
+elseif(changed)
+  string(APPEND commit " with changes")
+endif()
+
 file(WRITE ${OUT} "// Written by HashCode.cmake.
 #include \"apps/lidarena/code_hashes.hpp\"
 namespace lidarena {
 const char* const kCodeHashes = R\"({\"simulator\": \"${simulator_hash}\",
  \"scorer\": \"${scorer_hash}\",
  \"methods\": {${json}}})\";
+const char* const kCommit = \"${commit}\";
 }  // namespace lidarena
 ")

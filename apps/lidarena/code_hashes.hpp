@@ -7,4 +7,7 @@ namespace lidarena {
 /// source files that decide the result of each part; written by cmake/HashCode.cmake.
 extern const char* const kCodeHashes;
 
+/// The commit of these files, "with changes" where they differ from it; "unknown" outside a clone.
+extern const char* const kCommit;
+
 }  // namespace lidarena

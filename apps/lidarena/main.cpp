@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "apps/lidarena/code_hashes.hpp"
+#include "apps/lidarena/origin.hpp"
 #include "apps/lidarena/shell_help.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
@@ -50,8 +51,14 @@ void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {
 
-/// Version and build options, which distinguish builds of the same version.
-std::string version_text() { return "lidarena " LIDARENA_VERSION "\n" LIDARENA_BUILD_FACTS; }
+/// Where this program comes from.
+std::string origin() { return origin_of(std::filesystem::read_symlink("/proc/self/exe")); }
+
+/// Version, origin and build options, which distinguish builds of the same version.
+std::string version_text() {
+  return fmt::format("lidarena {} from {}, commit {}\n{}", LIDARENA_VERSION, origin(), kCommit,
+                     LIDARENA_BUILD_FACTS);
+}
 
 /// The hash of the method in whose folder an algorithm is: the folder with the longest name that
 /// the algorithm's name begins with.
@@ -70,7 +77,7 @@ Json version_json() {
   Json& methods = code["methods"] = {{"external", by_folder.at("external")}};
   for (const odometry::AlgorithmInfo& info : odometry::list_algorithms())
     methods[info.name] = hash_of(info.name, by_folder);
-  return {{"version", LIDARENA_VERSION}, {"code", code}};
+  return {{"version", LIDARENA_VERSION}, {"origin", origin()}, {"commit", kCommit}, {"code", code}};
 }
 
 /// Whether the arguments are --version and --json, in any order.

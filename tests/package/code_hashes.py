@@ -19,6 +19,25 @@ def hashes(cmake, source, library):
     return json.loads(re.search(r'R"\((.*)\)"', out.read_text(), re.DOTALL).group(1))
 
 
+def commit(cmake, source, library):
+    hashes(cmake, source, library)
+    return re.search(r'kCommit = "(.*)"', (library.parent / "code_hashes.cpp").read_text())[1]
+
+
+def check_commit(cmake, source, library):
+    """The commit of a clone, whether the code differs from it, and none outside a clone."""
+    assert commit(cmake, source, library) == "unknown"
+    if not shutil.which("git"):
+        return
+    git = ["git", "-C", library.parent, "-c", "user.name=a", "-c", "user.email=a@b"]
+    for command in (["init", "-q"], ["add", "lidarena"], ["commit", "-q", "-m", "a"]):
+        subprocess.run([*git, *command], check=True)
+    known = commit(cmake, source, library)
+    assert re.fullmatch("[0-9a-f]{10}", known), known
+    (library / "README.md").write_text("changed")
+    assert commit(cmake, source, library) == f"{known} with changes"
+
+
 def parts(code):
     return {"simulator": code["simulator"], "scorer": code["scorer"], **code["methods"]}
 
@@ -63,6 +82,7 @@ def main(cmake, source):
             path.write_text(kept)
             found = {part for part in before if now[part] != before[part]}
             assert found == changed, f"{file}: {found}, expected {changed}"
+        check_commit(cmake, source, library)
 
 
 main(sys.argv[1], pathlib.Path(sys.argv[2]).resolve())

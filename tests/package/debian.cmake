@@ -21,6 +21,10 @@ foreach(package IN ITEMS ${program} ${development})
   run(dpkg-deb --extract ${package} ${WORK}/unpacked)
 endforeach()
 run(${WORK}/unpacked/usr/bin/lidarena info house)
+run(${WORK}/unpacked/usr/bin/lidarena --version)
+if(NOT out MATCHES "from the installation in ${WORK}/unpacked/usr, commit ")
+  message(FATAL_ERROR "the program does not know where it is: ${out}")
+endif()
 foreach(file IN ITEMS share/doc/lidarena/copyright include/lidarena/world/world.hpp
                       share/man/man1/lidarena.1 share/lidarena/schemas/sensor.schema.json
                       share/bash-completion/completions/lidarena)

@@ -101,7 +101,7 @@ def check_licences(root):
 def check_use(root, work, built):
     """Program, command and module work without any setting, and the module names the Python it is for."""
     program = root / "lidarena/bin/lidarena"
-    assert "lidarena" in run(program, "--version")
+    assert f"from the Python package in {root}, commit" in run(program, "--version")
     script, = root.glob("*.data/scripts/lidarena")
     assert run(sys.executable, script, "--version", PYTHONPATH=str(root)) == run(program, "--version")
     data = work / "data"

@@ -28,7 +28,8 @@ TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
     EXPECT_THAT(verb_help.out, HasSubstr("--json")) << verb;
   }
   EXPECT_EQ(call("--version").exit_code, 0);
-  EXPECT_THAT(call("--version").out, HasSubstr("lidarena 0."));
+  EXPECT_THAT(call("--version").out, AllOf(HasSubstr("lidarena 0."),
+                                           HasSubstr("from the build in /"), HasSubstr("commit ")));
   EXPECT_EQ(call("fly").exit_code, 2);
 }
 
