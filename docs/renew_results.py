@@ -51,7 +51,7 @@ import targets
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
 NEEDS = DATA / "needs"  # studies that vary settings
-PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md",
+PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md", DOCS / "machines.md",
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
@@ -480,7 +480,7 @@ def check():
             faults.append(f"{file.name}: differs from docs/results/data, run docs/renew_results.py")
         if paper_protocol.BLOCK.search(page) and paper_protocol.renewed(page) != page:
             faults.append(f"{file.name}: differs from docs/results/data/paper, run docs/paper_protocol.py --page")
-        if file.name != "performance.md":  # it also has figures of other programs
+        if file.name not in ("performance.md", "machines.md"):  # they also have figures of other programs
             text = BLOCK.sub("", page)
             for other in (paper_protocol, targets):  # their tests compare them with the rows
                 text = other.BLOCK.sub("", text)
