@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Writes a source file with hashes of the code that decides the results of the simulator, of each
-# method and of the scorer, and with the commit of this code: cmake -DSOURCES=FOLDER -DCOMPILER=TEXT -DOUT=FILE.cpp -P HashCode.cmake
+# method and of the scorer, and with the commit of this code:
+# cmake -DSOURCES=FOLDER -DCOMPILER=TEXT -DOUT=FILE.cpp -P HashCode.cmake
 # A hash covers the text of the part's sources and headers, without lines of comments, and COMPILER,
 # which says what else decides the code made of them.
 cmake_policy(SET CMP0057 NEW)
